@@ -1,5 +1,6 @@
 """The one door to every programme: a session, whatever it is, to the calibration that its programme gives."""
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from estimator.calibration import calibrate as calibrate_block
@@ -33,9 +34,9 @@ def calibrate(session: CalibrationSession, *, quadratic: bool | None = None) -> 
     ScheduleError : the rows cannot support the programme.
     """
     if session.programme == ROTATION_ALIGNMENT:
-        return alignment_calibration(align(session))
+        return replace(alignment_calibration(align(session)), screening=session.screening)
     if session.programme == RATE_TABLE:
-        return rate_table_calibration(rate_table(session))
+        return replace(rate_table_calibration(rate_table(session)), screening=session.screening)
     if session.programme == THERMAL:
         return calibrate_thermal(session, quadratic=quadratic)
     return calibrate_block(session, quadratic=quadratic)

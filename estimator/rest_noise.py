@@ -83,20 +83,31 @@ def waves(readings: Array, start: Indices, stop: Indices) -> Waves | None:
         return None
     means = np.full((len(start), count, readings.shape[1]), np.nan)
     variance = np.full((len(start), readings.shape[1]), np.nan)
+    held = np.broadcast_to(samples[:, None], variance.shape).copy()
     for i in np.flatnonzero(samples > 1):
         rest = readings[start[i] : stop[i]]
         length = samples[i] // count
         means[i] = rest[: length * count].reshape(count, length, -1).mean(axis=1)
         variance[i] = rest.var(axis=0, ddof=1)
-    return waves_of(means, variance, samples)
+        for j in np.flatnonzero(np.isnan(variance[i])):
+            x = rest[:, j]
+            known = np.isfinite(x)
+            held[i, j] = max(np.count_nonzero(known), 1)
+            of_blocks = [b[np.isfinite(b)] for b in x[: length * count].reshape(count, length)]
+            means[i, :, j] = [b.mean() if len(b) else x[known].mean() for b in of_blocks]
+            variance[i, j] = x[known].var(ddof=min(held[i, j] - 1, 1))
+    return waves_of(means, variance, samples, held)
 
 
-def waves_of(means: Array, variance: Array, samples: Indices) -> Waves:
-    """Of block means (n, B, m), variances (n, m) of one sample, units of the readings (squared), and ``samples`` (n,).
+def waves_of(means: Array, variance: Array, samples: Indices, held: Array | None = None) -> Waves:
+    """Of block means (n, B, m), variances (n, m) of one sample, units of the readings (squared), and ``samples`` (n,),
+    of which each channel ``held`` (n, m); all unless given.
 
-    NaN where a rest is a single sample.
+    NaN where a rest is a single sample. White noise of which some samples are left out is white noise of fewer, larger
+    ones: the waves show it, and what a mean has follows from them.
     """
-    z, n, count = dct(means, norm="ortho", axis=1)[:, 1:], samples[:, None], means.shape[1]
+    z, count = dct(means, norm="ortho", axis=1)[:, 1:], means.shape[1]
+    n = samples[:, None] if held is None else held
     within = (n - 1) * variance - (n // count) * (z**2).sum(axis=1)
     return Waves(z, samples, variance / n, np.maximum(within, 0.0) / (np.maximum(n - count, 1) * n))
 

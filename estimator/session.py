@@ -39,6 +39,29 @@ QUANTISATION = {FREE_RUNNING: 1 / 6, RESET: 1 / 12}
 """Variance of one count, pulses²: a reading is rounded, which is uniform (1/12); a difference holds two of them."""
 
 
+CORRECTED_SAMPLES, LEFT_OUT, NOTED = "corrected", "left-out", "noted"
+"""What was done about a thing that the screening of a raw file found."""
+
+
+@dataclass(frozen=True)
+class ScreenFinding:
+    """One thing that the screening of a raw file found (`estimator.screening`)."""
+
+    kind: str
+    """One of `estimator.screening.KINDS`."""
+    sensors: tuple[str, ...]
+    """None where it is the clock's."""
+    rows: int
+    """How many it touches."""
+    first_row: int | None
+    """Counted from 1, as people do; None where it is of the whole file."""
+    last_row: int | None
+    action: str
+    """``corrected``, ``left-out`` or ``noted``."""
+    message: str
+    """In a sentence, for people."""
+
+
 def comparable(programme: str) -> tuple[str, ...]:
     """Programmes whose results are of the same parameters, so that one is judged against the other."""
     return CALIBRATIONS if programme in CALIBRATIONS else (programme,)
@@ -172,6 +195,10 @@ class CalibrationSession:
     """``as-found`` or ``as-left``: before or after the unit was worked on; None when the file does not say."""
     origin: str | None = None
     """``simulated``; None when measured, which is what a file without the field says."""
+    screening: tuple[ScreenFinding, ...] = ()
+    """What was found in the raw rows before they were averaged; samples left out are NaN in ``readings``."""
+    unscreened: tuple[str, ...] = ()
+    """Kinds that the file declines to be screened for."""
 
     @property
     def is_raw(self) -> bool:

@@ -21,6 +21,8 @@ from estimator.errors import Problem, ScheduleError, problem_at
 from estimator.message import joined, say
 from estimator.rest_noise import Indices, waves
 from estimator.rest_tilt import MeanErrors, errors_of_means
+from estimator.screening import without_wild
+from estimator.screening.findings import Seen, seen, together
 from estimator.session import ACCELEROMETER, Array, CalibrationSession, Sensor
 
 WINDOW = 1.0
@@ -56,6 +58,9 @@ table that rests makes and no warm-up imitates."""
 PIECES = 4
 """Quarters in which a stretch is looked at for a slow turn: they show one that comes back to where it began."""
 
+KEPT = 0.1
+"""Part of a rest's samples that every channel must keep: a logger polls hardly ten times faster than its sensor."""
+
 DISTINCT = 30.0
 """Standard errors of a quarter's mean by the noise from sample to sample, which that change must exceed as well: far
 more than white noise gives, because slow noise is not counted in them."""
@@ -83,14 +88,19 @@ class Intervals:
         return Intervals(self.start[chosen], self.stop[chosen])
 
     def sums(self, values: Array) -> Array:
-        """(n, ...) sums of values (R, m), or of any shape (R, ...) and unit, over each interval."""
+        """(n, ...) sums of values (R, m), or of any shape (R, ...) and unit, over each interval; NaN left out."""
+        if (none := np.isnan(values)).any():
+            values = np.where(none, 0.0, values)
         edges = np.stack([self.start, self.stop], axis=1).ravel()
         padded = np.concatenate([values, np.zeros_like(values[:1])])
         return np.asarray(np.add.reduceat(padded, edges, axis=0)[::2])
 
     def means(self, values: Array) -> Array:
         """(n, ...) means of values (R, m), or of any shape (R, ...) and unit, over each interval."""
-        sums = self.sums(values)
+        sums, known = self.sums(values), np.isfinite(values)
+        if not known.all():
+            with np.errstate(invalid="ignore"):
+                return np.asarray(sums / self.sums(known.astype(float)))
         return sums / self.samples.reshape(-1, *[1] * (sums.ndim - 1))
 
 
@@ -124,12 +134,64 @@ def average(
         intervals = at_rest(session, labelled(np.concatenate([[0], np.cumsum(changed)])))
     else:
         intervals = best(session, residual)
+    intervals = with_readings(session, intervals)
+    whole, session = session, without_stray(session, intervals)
     rows = averaged(session, intervals)
+    if session is not whole:
+        rows = replace(rows, at_ends=intervals.means(ends(whole.readings)))
     response = None if tilts is None else tilts(rows)
     if response is None:
         return rows
     errors = errors_by_kind(session, intervals, response)
     return replace(rows, standard_errors=errors.alone, tilt_error=errors.tilt)
+
+
+def without_stray(session: CalibrationSession, intervals: Intervals) -> CalibrationSession:
+    """The raw log without the samples that lie far from all others of their rest."""
+    if "wild" in session.unscreened:
+        return session
+    readings, found = session.readings, list[Seen]()
+    for a, b in zip(intervals.start.tolist(), intervals.stop.tolist(), strict=True):
+        wild = without_wild(readings[a:b])
+        if wild is not None:
+            readings = readings.copy() if readings is session.readings else readings
+            readings[a:b][wild] = np.nan
+            found += stray(session.sensors, wild, a)
+    return replace(session, readings=readings, screening=(*session.screening, *together(found))) if found else session
+
+
+def stray(sensors: tuple[Sensor, ...], wild: NDArray[np.bool_], at: int) -> list[Seen]:
+    """What was ``wild`` (r, m) in the rows from ``at`` on."""
+    channels = np.flatnonzero(wild.any(axis=0))
+    return [item for i in channels for item in seen("wild", (sensors[i].name,), np.flatnonzero(wild[:, i]), at)]
+
+
+def with_readings(session: CalibrationSession, intervals: Intervals) -> Intervals:
+    """The rests of which every channel holds readings; ScheduleError where none is left."""
+    known = np.isfinite(session.readings)
+    return intervals if known.all() else enough(intervals, intervals.sums(known.astype(float)), session.sensors)
+
+
+def enough(intervals: Intervals, known: Array, sensors: tuple[Sensor, ...]) -> Intervals:
+    """Those in which ``known`` (n, m) samples of every channel are enough for a mean."""
+    least = np.minimum(np.maximum(KEPT * intervals.samples, 2), intervals.samples)
+    held = known >= least[:, None]
+    if len(held) and not held.all(axis=1).any():
+        name = sensors[int(held.sum(axis=0).argmin())].name
+        text = "has readings in hardly any rest: nearly all its samples were left out; record it again, or remove it"
+        raise ScheduleError([Problem(name, text)])
+    return intervals.at(held.all(axis=1))
+
+
+def filled(readings: Array) -> Array:
+    """Readings (R, m) with the last known one in every gap, the first before all; any unit."""
+    known = np.isfinite(readings)
+    if known.all():
+        return readings
+    last = np.maximum.accumulate(np.where(known, np.arange(len(readings))[:, None], -1), axis=0)
+    first = np.where(known.any(axis=0), known.argmax(axis=0), 0)
+    whole = np.take_along_axis(readings, np.where(last < 0, first, last), axis=0)
+    return np.nan_to_num(whole)
 
 
 def labelled(position: NDArray[np.int64]) -> Intervals:
@@ -192,7 +254,7 @@ def moving(session: CalibrationSession, intervals: Intervals) -> NDArray[np.bool
     pieces = [Intervals(intervals.start + k * quarter, intervals.start + (k + 1) * quarter) for k in range(PIECES)]
     for i, sensor in enumerate(session.sensors):
         if sensor.kind == ACCELEROMETER:
-            values = session.readings[:, i]
+            values = filled(session.readings[:, i : i + 1])[:, 0]
             drift = np.ptp([piece.means(values) for piece in pieces], axis=0)
             if (drift > far_turn(sensor)).any():
                 jitter = intervals.sums(np.diff(values, append=values[-1]) ** 2) / (2 * intervals.samples)
@@ -237,18 +299,23 @@ def block_length(rate: float) -> int:
 
 
 def moments(readings: Array, block: int) -> tuple[Array, Array]:
-    """(blocks, m) mean and variance of every whole block of readings (R, m), their unit (squared)."""
+    """(blocks, m) mean and variance of every whole block of readings (R, m), their unit (squared), NaN where hardly any
+    is known."""
     count = len(readings) // block
     mean, within = np.empty((count, readings.shape[1])), np.empty((count, readings.shape[1]))
     for i, channel in enumerate(readings[: count * block].T):
         blocks = channel.reshape(count, block)
         mean[:, i], within[:, i] = blocks.mean(axis=1), blocks.var(axis=1)
+        for k in np.flatnonzero(np.isnan(mean[:, i])).tolist():
+            known = blocks[k][np.isfinite(blocks[k])]
+            if len(known) > 1:
+                mean[k, i], within[k, i] = known.mean(), known.var()
     return mean, within
 
 
 def smallest_steps(readings: Array) -> Array:
     """(m,) least change, above zero, from sample to sample of readings (R, m), their unit; infinite where none is."""
-    steps = [np.abs(np.diff(channel)) for channel in readings.T]
+    steps = [np.abs(np.diff(channel)) for channel in filled(readings).T]
     return np.array([changes.min(where=changes > 0, initial=np.inf) for changes in steps])
 
 
@@ -257,12 +324,16 @@ def quietness_of(block: int, mean: Array, within: Array, steps: Array) -> Quietn
     count, m = mean.shape
     if count < BLOCKS:
         return Quietness(block, np.empty(0))
-    total = np.zeros(count - BLOCKS + 1)
+    total, known = np.zeros(count - BLOCKS + 1), np.zeros(count - BLOCKS + 1)
     for i in range(m):
         view = np.lib.stride_tricks.sliding_window_view
         variance = view(within[:, i], BLOCKS).mean(axis=1) + view(mean[:, i], BLOCKS).var(axis=1)
-        total += variance / noise_floor(variance, float(steps[i]))
-    return Quietness(block, total / m)
+        usable = np.isfinite(variance)
+        if usable.any():
+            ratio = variance / noise_floor(variance[usable], float(steps[i]))
+            total[usable] += ratio[usable]
+            known += usable
+    return Quietness(block, np.divide(total, known, out=np.full_like(total, np.inf), where=known > 0))
 
 
 def noise_floor(variance: Array, step: float) -> float:
@@ -299,7 +370,8 @@ def best(session: CalibrationSession, residual: Callable[[CalibrationSession], f
         intervals = intervals.at(~moving(session, intervals))
         key = (*intervals.start.tolist(), *intervals.stop.tolist())
         if len(intervals) >= FEWEST and key not in tried:
-            tried[key] = (residual(averaged(session, intervals)), intervals)
+            kept = with_readings(session, intervals)
+            tried[key] = (residual(averaged(without_stray(session, kept), kept)), intervals)
     if not tried:
         raise ScheduleError([Problem("table", no_rests_message(len(session.readings)))])
     return min(tried.values(), key=lambda pair: pair[0])[1]
@@ -347,13 +419,14 @@ def averaged(session: CalibrationSession, intervals: Intervals) -> CalibrationSe
 def variances(session: CalibrationSession, intervals: Intervals) -> Array:
     """(n, m) variance of the input within every interval, by nominal scales, (m/s²)² or (rad/s)²."""
     inputs = session.readings / [s.nominal_scale for s in session.sensors]
-    inputs = inputs - inputs.mean(axis=0)
+    inputs = inputs - np.nanmean(inputs, axis=0)
     return np.maximum(intervals.means(inputs**2) - intervals.means(inputs) ** 2, 0.0)
 
 
 def ends(readings: Array) -> Array:
     """(R, m, 2) 1 where a sample of readings (R, m) is its channel's largest, its smallest, else 0; no unit."""
-    return np.stack([readings == readings.max(axis=0), readings == readings.min(axis=0)], axis=-1).astype(float)
+    most, least = np.fmax.reduce(readings, axis=0), np.fmin.reduce(readings, axis=0)
+    return np.stack([readings == most, readings == least], axis=-1).astype(float)
 
 
 def contiguous(session: CalibrationSession) -> bool:

@@ -130,6 +130,7 @@ class Reports:
             ),
             gauge="stand",
             site=session.site,
+            screening=session.screening,
         )
 
 

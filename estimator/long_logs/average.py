@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from estimator.errors import FormatError, Problem, ScheduleError
+from estimator.errors import Problem, ScheduleError
 from estimator.long_logs.tally import RowTally, check_alike
 from estimator.message import say
 from estimator.reading.problems import Problems
@@ -20,6 +20,8 @@ from estimator.static import (
     Quietness,
     TiltResponse,
     block_length,
+    enough,
+    filled,
     moments,
     no_rests_message,
     quietness_of,
@@ -89,12 +91,21 @@ def average_long(
     ScheduleError
         The log holds no position, too many, or too few that stand still.
     """
-    session = (_labelled(log) if log.labels is not None else _chosen(log, residual)).session(tilts)
+    tally = _labelled(log) if log.labels is not None else _chosen(log, residual)
+    kept = kept_of(tally)
+    session = (tally if kept.all() else tally.at(kept)).session(tilts)
     problems = Problems(None)
     kinds = {sensor.kind for sensor in session.sensors}
     check_schedule(session.programme, session, kinds, raw=True, problems=problems)
     problems.raise_if_any()
     return session
+
+
+def kept_of(tally: RowTally) -> Mask:
+    """(n,) the rests of which every channel holds readings; ScheduleError where there is none."""
+    sensors = tally.head.sensors
+    kept = enough(tally.rests, tally.known[:, : len(sensors)], sensors)
+    return np.isin(tally.rests.start, kept.start)
 
 
 def _labelled(log: LongLog) -> RowTally:
@@ -108,17 +119,10 @@ def _labelled(log: LongLog) -> RowTally:
 
 def _rows(log: LongLog) -> Iterator[tuple[int, CalibrationSession]]:
     """Every part with its first row; FormatError where they do not follow one another."""
-    at, head, last = 0, None, -np.inf
+    at, head = 0, None
     for part in log.parts():
         head = head or part
         check_alike(head, part, at)
-        if part.time is not None:
-            if part.time[0] < last:
-                text = say(
-                    "{time} is earlier than the row before; keep the order measured", time=f"{part.time[0]:.10g}"
-                )
-                raise FormatError([Problem("time_s", text, at + 1)])
-            last = part.time[-1]
         yield at, part
         at += len(part.readings)
 
@@ -149,13 +153,13 @@ def _jitters(log: LongLog, choices: Sequence[Intervals]) -> list[Array]:
     sums = [np.zeros((len(rests), m)) for rests in choices]
     before = np.empty((0, m))
     for at, part in _rows(log):
-        readings = np.concatenate([before, part.readings])
+        readings = filled(np.concatenate([before, part.readings]))
         squares, begin = np.diff(readings, axis=0) ** 2, at - len(before)
         for total, rests in zip(sums, choices, strict=True):
             low, high = np.searchsorted(rests.stop, begin, "right"), np.searchsorted(rests.start, begin + len(squares))
             for i in range(int(low), int(high)):
                 total[i] += squares[max(rests.start[i] - begin, 0) : max(rests.stop[i] - begin, 0)].sum(axis=0)
-        before = part.readings[-1:]
+        before = readings[-1:]
     return sums
 
 
@@ -203,12 +207,12 @@ def _quietness(log: LongLog) -> _SeenRows:
     remainder, before, samples = np.empty((0, np.count_nonzero(watched))), None, 0
     for at, part in _rows(log):
         readings = part.readings[:, watched]
-        new = readings if before is None else np.concatenate([before, readings])
+        new = filled(readings if before is None else np.concatenate([before, readings]))
         steps = np.minimum(steps, smallest_steps(new))
         readings = np.concatenate([remainder, readings])
         mean, within = moments(readings, block)
         means.append(mean)
         withins.append(within)
-        remainder, before, samples = readings[len(mean) * block :], readings[-1:], at + len(part.readings)
+        remainder, before, samples = readings[len(mean) * block :], new[-1:], at + len(part.readings)
     quiet = quietness_of(block, np.concatenate(means), np.concatenate(withins), steps)
     return _SeenRows(quiet, head.sample_rate, samples)

@@ -13,6 +13,9 @@ from estimator.errors import FormatError, problem_at
 from estimator.message import say
 from estimator.rest_noise import block_count, waves_of
 from estimator.rest_tilt import MeanErrors, errors_of_means
+from estimator.screening import without_wild
+from estimator.screening.findings import Seen, together
+from estimator.screening.wild import BLOCK
 from estimator.session import ACCELEROMETER, Array, CalibrationSession, Sensor
 from estimator.static import (
     PIECES,
@@ -22,6 +25,7 @@ from estimator.static import (
     errors_of_kinds,
     far_turn,
     long_enough_to_move,
+    stray,
     turned,
 )
 
@@ -49,6 +53,9 @@ class RowTally:
         self._ends = np.zeros((n, m, 2))
         self._range = np.array([[-np.inf, np.inf]]).repeat(m, axis=0)
         self._reached = np.empty((0, 2), np.intp)  # channels and ends that this part comes to
+        self._missing = np.zeros((0, *self._sums.shape[1:]))  # of as many rests as sums, from the first that misses any
+        self._stray: list[Seen] = []
+        self._pending = np.empty((m + len(self._averaged), 0))  # of a rest, until a block of it is whole
         named = [name for name in SET if getattr(head, name) is not None]
         self._set: dict[str, Array] = {
             name: np.zeros((n, *getattr(head, name).shape[1:]), getattr(head, name).dtype) for name in named
@@ -67,48 +74,91 @@ class RowTally:
 
     def _note_range(self, readings: Array) -> None:
         """A new end of a channel's range: no rest was there before."""
-        seen = np.column_stack([readings.max(axis=1), readings.min(axis=1)])
+        seen = np.column_stack([np.fmax.reduce(readings, axis=1), np.fmin.reduce(readings, axis=1)])
         farther = np.column_stack([seen[:, 0] > self._range[:, 0], seen[:, 1] < self._range[:, 1]])
         self._ends[:, farther] = 0
         self._range[farther] = seen[farther]
         self._reached = np.argwhere(seen == self._range)
 
     def _begin(self, i: int, part: CalibrationSession, row: int, values: Array) -> None:
-        self._first[i] = values[:, row]
+        first = values[:, row]
+        if np.isnan(first).any():
+            known = np.isfinite(values[:, row:])
+            beside = values[np.arange(len(values)), row + known.argmax(axis=1)]
+            first = np.where(np.isnan(first), np.nan_to_num(beside), first)
+        self._first[i] = first
         for name, stored in self._set.items():
             stored[i] = getattr(part, name)[row]
 
     def _add(self, i: int, values: Array, at: int) -> None:
         """The rows of rest i that are in this part."""
-        inside = np.clip(self._edges[i] - at, 0, values.shape[1])
-        samples = values[:, inside[0] : inside[-1]]
-        starts = np.flatnonzero(np.diff(inside))
-        away = samples - self._first[i, :, None]
-        self._sums[i, starts] += np.add.reduceat(away, inside[starts] - inside[0], axis=1).T
-        m = len(self._range)
-        self._squares[i] += np.einsum("jr,jr->j", away[:m], away[:m])
+        start, stop = int(self.rests.start[i]), int(self.rests.stop[i])
+        begin, end = max(start - at, 0), min(stop - at, values.shape[1])
+        samples = values[:, begin:end]
         for channel, side in self._reached:
             self._ends[i, channel, side] += np.count_nonzero(samples[channel] == self._range[channel, side])
+        at += begin - self._pending.shape[1]
+        samples = np.concatenate([self._pending, samples], axis=1)
+        seen = at + samples.shape[1]
+        ready = seen - at if seen == stop else start + (seen - start) // BLOCK * BLOCK - at
+        self._pending = samples[:, ready:].copy()
+        if ready:
+            self._sum(i, samples[:, :ready], at)
+
+    def _sum(self, i: int, samples: Array, at: int) -> None:
+        """Rows of rest i from row ``at`` on, whole blocks."""
+        inside, m = np.clip(self._edges[i] - at, 0, samples.shape[1]), len(self._range)
+        starts = np.flatnonzero(np.diff(inside))
+        wild = None if "wild" in self.head.unscreened else without_wild(samples[:m].T)
+        if wild is not None:
+            samples[:m][wild.T] = np.nan
+            self._stray += stray(self.head.sensors, wild, at)
+        away = samples - self._first[i, :, None]
+        begins = inside[starts] - inside[0]
+        sums = np.add.reduceat(away, begins, axis=1).T
+        if np.isnan(sums).any():
+            none = np.isnan(away)
+            if not len(self._missing):
+                self._missing = np.zeros_like(self._sums)
+            self._missing[i, starts] += np.add.reduceat(none.astype(float), begins, axis=1).T
+            away[none] = 0.0
+            sums = np.add.reduceat(away, begins, axis=1).T
+        self._sums[i, starts] += sums
+        self._squares[i] += np.einsum("jr,jr->j", away[:m], away[:m])
 
     def at(self, chosen: NDArray[np.bool_]) -> "RowTally":
         """Of those of the rests that are ``chosen`` (n,)."""
         other = RowTally(self.head, self.rests.at(chosen))
         for name in ("_first", "_sums", "_squares", "_ends"):
             setattr(other, name, getattr(self, name)[chosen])
-        other._range = self._range
+        other._range, other._stray = self._range, self._stray
+        other._missing = self._missing[chosen] if len(self._missing) else self._missing
         other._set = {name: stored[chosen] for name, stored in self._set.items()}
         return other
 
-    def _between(self) -> Array:
+    def _between(self, sums: Array) -> Array:
         """(n, edges, c) sums from the start of a rest to each of its edges, in the order of `edges`."""
-        up_to = np.concatenate([np.zeros_like(self._sums[:, :1]), np.cumsum(self._sums, axis=1)], axis=1)
+        up_to = np.concatenate([np.zeros_like(sums[:, :1]), np.cumsum(sums, axis=1)], axis=1)
         return np.take_along_axis(up_to, self._rank[..., None], axis=1)
+
+    def _held(self, first: int, last: int | None) -> Array:
+        """(n, pieces, c) samples that are known between the edges ``first`` to ``last``, at least one."""
+        lengths = np.diff(np.take_along_axis(self._edges, self._rank, axis=1)[:, first:last], axis=1)[..., None]
+        if not len(self._missing):
+            return np.broadcast_to(np.maximum(lengths, 1), (*lengths.shape[:2], self._sums.shape[2]))
+        return np.maximum(lengths - np.diff(self._between(self._missing)[:, first:last], axis=1), 1)
+
+    @property
+    def known(self) -> Array:
+        """(n, c) samples of every rest that are numbers."""
+        missing = self._missing.sum(axis=1) if len(self._missing) else 0.0
+        return np.asarray(self.rests.samples[:, None] - missing + np.zeros(self._first.shape))
 
     def drift(self) -> Array:
         """(n, m) range of the means of the quarters, reading units."""
         m = self._squares.shape[1]
-        quarters = np.diff(self._between()[:, self.blocks + 1 : -1, :m], axis=1)
-        return np.asarray(np.ptp(quarters / (self.rests.samples // PIECES)[:, None, None], axis=1))
+        quarters = np.diff(self._between(self._sums)[:, self.blocks + 1 : -1, :m], axis=1)
+        return np.asarray(np.ptp(quarters / self._held(self.blocks + 1, -1)[..., :m], axis=1))
 
     def may_move(self) -> bool:
         """Whether a quarter differs so far that the noise from sample to sample must be known."""
@@ -142,12 +192,13 @@ class RowTally:
     def _spread(self) -> Array:
         """(n, m) sums of squares about the mean, reading units squared."""
         sums = self._sums[..., : self._squares.shape[1]].sum(axis=1)
-        return np.maximum(self._squares - sums**2 / self.rests.samples[:, None], 0.0)
+        return np.maximum(self._squares - sums**2 / np.maximum(self.known[:, : sums.shape[1]], 1), 0.0)
 
     def _averaged_rows(self) -> CalibrationSession:
         head, samples, m = self.head, self.rests.samples, len(self.head.sensors)
+        known = np.maximum(self.known, 1)
         assert head.sample_rate is not None
-        means = self._first + self._sums.sum(axis=1) / samples[:, None]
+        means = self._first + self._sums.sum(axis=1) / known
         scale = np.array([sensor.nominal_scale for sensor in head.sensors])
         averages = dict(zip(self._averaged, means[:, m:].T, strict=True))
         middle = (self.rests.start + self.rests.stop - 1) / 2 / head.sample_rate
@@ -156,7 +207,7 @@ class RowTally:
             readings=means[:, :m],
             standard_errors=self._errors().alone,
             at_ends=self._ends / samples[:, None, None],
-            vibration=self._spread / samples[:, None] / scale**2,
+            vibration=self._spread / known[:, :m] / scale**2,
             time=averages.get("time", middle),
             temperature=averages.get("temperature"),
             flipped=self._set.get("flipped"),
@@ -167,6 +218,7 @@ class RowTally:
             turn_rate=None,
             sample_rate=None,
             counts_averaged=samples.astype(float) if contiguous(head) else None,
+            screening=together(self._stray),
         )
 
     def _errors(self, response: Array | None = None) -> MeanErrors:
@@ -178,11 +230,21 @@ class RowTally:
         if samples.max() < 2:
             return MeanErrors(np.full((len(samples), len(channels)), np.nan))
         single = samples < 2
-        length = np.maximum(samples // self.blocks, 1)
-        means = np.diff(self._between()[:, : self.blocks + 1, channels], axis=1) / length[:, None, None]
-        variance = self._spread[:, channels] / np.maximum(samples - 1, 1)[:, None]
+        sums = np.diff(self._between(self._sums)[:, : self.blocks + 1, channels], axis=1)
+        held, known = self._held(0, self.blocks + 1)[..., channels], np.maximum(self.known[:, channels], 1)
+        whole = (self._sums.sum(axis=1)[:, channels] / known)[:, None]
+        means = np.where(self._empty(channels), whole, sums / held)
+        variance = self._spread[:, channels] / np.maximum(known - 1, 1)
         means[single], variance[single] = np.nan, np.nan
-        return errors_of_means(waves_of(means, variance, samples), response)
+        return errors_of_means(waves_of(means, variance, samples, known), response)
+
+    def _empty(self, channels: list[int]) -> Array:
+        """(n, B, k) blocks of which nothing is known: they are taken to read as the whole rest."""
+        if not len(self._missing):
+            return np.zeros((len(self.rests), self.blocks, 1), dtype=bool)
+        edges = np.take_along_axis(self._edges, self._rank, axis=1)[:, : self.blocks + 1]
+        missing = np.diff(self._between(self._missing)[:, : self.blocks + 1, channels], axis=1)
+        return np.asarray(missing >= np.diff(edges, axis=1)[..., None])
 
 
 def edges(rests: Intervals, blocks: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

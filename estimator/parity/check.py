@@ -5,7 +5,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from estimator.applied_vector import gravity
-from estimator.errors import Problem, ScheduleError
 from estimator.message import joined, say
 from estimator.parity.blocks import ANY, AUTO, MOTIONS, BlockSelection, select
 from estimator.parity.freed import freed
@@ -66,13 +65,10 @@ class ParityAccumulator:
         self.ledger = Ledger(self.reference, length, gyros=gyros)
 
     def add(self, readings: Array) -> None:
-        """The next rows (R, m) of all m sensors, reading units as in the file; ScheduleError where one is no number."""
-        bad = np.flatnonzero(~np.isfinite(readings).all(axis=1))
-        if len(bad):
-            row = self._samples + int(bad[0]) + 1
-            raise ScheduleError([Problem("table", "contains a value that is not a finite number; remove the row", row)])
+        """The next rows (R, m) of all m sensors, reading units as in the file; a row with NaN says nothing."""
+        known = readings[np.isfinite(readings).all(axis=1)]
         self._samples += len(readings)
-        self.ledger.add(readings / self._period)
+        self.ledger.add(known / self._period)
 
     def result(self, *, motion: str = AUTO, false_alarm: float = FALSE_ALARM) -> ParityResult:
         """What the recording so far says; ScheduleError where it cannot say anything. More may be added after it.

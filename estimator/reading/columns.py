@@ -21,6 +21,10 @@ from estimator.session import Array
 Column = Sequence[object] | Array
 """Cells as written: numbers, texts, None; or all numbers as an array."""
 Mask = NDArray[np.bool_]
+NO_NUMBER = frozenset(
+    ("nan", "-nan", "inf", "-inf", "+inf", "infinity", "na", "n/a", "null", "none", "-", "--", "#n/a")
+)
+"""Texts that sources write where there is no reading."""
 
 
 @dataclass(frozen=True)
@@ -55,6 +59,18 @@ class Columns:
         if not good.all():
             return self._faulty(name, cells, within, holes)
         return array
+
+    def samples(self, name: str, within: Interval) -> Array:
+        """(R,) readings of a raw log in their unit; NaN where a cell states none, or no number that one could be."""
+        cells = self.values[name]
+        array = as_floats(cells)
+        if array is None:
+            plain = [None if isinstance(cell, str) and cell.strip().casefold() in NO_NUMBER else cell for cell in cells]
+            array = as_floats(plain)
+        if array is None:
+            return self._faulty(name, plain, within, holes=True)
+        good = within.held_by(array)
+        return array if good.all() else np.where(good, array, np.nan)
 
     def words(self, name: str, allowed: tuple[str, ...]) -> NDArray[np.int64]:
         """(R,) index into the allowed words."""

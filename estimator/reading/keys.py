@@ -17,7 +17,7 @@ FORMAT = "imu-session/1"
 TOP = (
     "format", "unit", "unit_type", "block", "programme", "started_at", "powered_on_at", "time_since_power_on_s",
     "operator", "notes", "stage", "origin", "site", "stand", "mounting", "sensors", "table", "count_time_s", "counter",
-    "sample_rate_hz", "direction_sigma_deg",
+    "sample_rate_hz", "direction_sigma_deg", "screening",
 )  # fmt: skip
 SITE = ("latitude_deg", "height_m", "gravity_m_s2")
 STAND = ("id", "alpha_deg", "chi_deg", "sigma_arcsec", "sigma_count_time_s")

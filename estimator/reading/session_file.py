@@ -13,6 +13,7 @@ from estimator.reading.sensors import KINDS, check_pulses, read_sensors
 from estimator.reading.setting import read_moment, read_mounting, read_site, read_stand, read_time_since_power_on
 from estimator.reading.source import display_name, load
 from estimator.reading.table import read_table
+from estimator.screening import Screen
 from estimator.session import COUNTERS, IN_SERVICE, ORIGINS, PROGRAMMES, SIMULATED, STAGES, CalibrationSession
 
 
@@ -23,6 +24,7 @@ def read_session(
     most: Extent | None = None,
     part: bool = False,
     where: Where | None = None,
+    screen: Screen | None = None,
 ) -> CalibrationSession:
     """Read and check one calibration session.
 
@@ -33,6 +35,7 @@ def read_session(
     most : how much it may hold; `Extent()` unless given.
     part : whether these are some rows of a longer log, which need not support the programme by themselves.
     where : says where a field and row stand in the file that a dict was read from; messages name it.
+    screen : what was found in the parts before; a part without it is taken as it stands.
 
     Returns
     -------
@@ -44,10 +47,10 @@ def read_session(
     ScheduleError : every field is right, but the rows cannot support the programme.
     """
     problems = Problems(name or display_name(source), most, where)
-    return _assemble(Fields(load(source, problems), "", problems), part=part)
+    return _assemble(Fields(load(source, problems), "", problems), part=part, screen=screen)
 
 
-def _assemble(document: Fields, *, part: bool) -> CalibrationSession:
+def _assemble(document: Fields, *, part: bool, screen: Screen | None) -> CalibrationSession:
     """All parts of the session; raises what any of them recorded."""
     problems = document.problems
     _check_format(document)
@@ -63,15 +66,14 @@ def _assemble(document: Fields, *, part: bool) -> CalibrationSession:
     stand = read_stand(document, programme, kinds)
     mounting = read_mounting(document)
     check_pulses(document, sensors, programme)
-    sample_rate = document.optional_number("sample_rate_hz", WITHIN["sample_rate_hz"])
     count_time = document.optional_number("count_time_s", WITHIN["count_time_s"])
     counter = document.choice("counter", COUNTERS) if document.has("counter") else None
     stage = document.choice("stage", STAGES) if document.has("stage") else None
     origin = document.choice("origin", ORIGINS) if document.has("origin") else None
     texts = {key: document.optional_text(key) for key in ("unit_type", "operator", "notes")}
-    table = read_table(document, programme, sensors)
+    table = read_table(document, programme, sensors, part=part, screen=screen)
     if table is not None and not part:
-        check_schedule(programme, table, kinds, raw=document.has("sample_rate_hz"), problems=problems)
+        check_schedule(programme, table, kinds, raw=table.sample_rate is not None, problems=problems)
     problems.raise_if_any()
     assert table is not None, "a session without a table has problems"
     begun = 0.0 if table.time is None else float(table.time[0])
@@ -84,7 +86,6 @@ def _assemble(document: Fields, *, part: bool) -> CalibrationSession:
         site=site,
         stand=stand,
         mounting=mounting,
-        sample_rate=sample_rate,
         count_time=count_time,
         counter=counter,
         unit_type=texts["unit_type"] or None,

@@ -6,13 +6,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from estimator.message import joined, say
+from estimator.message import joined
 from estimator.reading.bounds import WITHIN
 from estimator.reading.columns import Columns
 from estimator.reading.fields import Fields
 from estimator.reading.interval import Interval
 from estimator.reading.keys import DIRECTIONS
+from estimator.reading.raw import read_raw
 from estimator.reading.shape import check_unknown, read_columns
+from estimator.screening import Screen, Screening
 from estimator.session import RATE_TABLE, ROTATION_ALIGNMENT, THERMAL, TWO_AXIS_STAND, Array, Sensor
 
 RUNS = ("direct", "flipped")
@@ -40,10 +42,15 @@ class Table:
     position: NDArray[np.int64] | None
     directions: Array | None
     direction_sigma: float | None
+    sample_rate: float | None
+    screening: Screening
+    unscreened: tuple[str, ...]
 
 
-def read_table(document: Fields, programme: str, sensors: tuple[Sensor, ...]) -> Table | None:
-    """Every array of the table; None when there is no usable table at all."""
+def read_table(
+    document: Fields, programme: str, sensors: tuple[Sensor, ...], *, part: bool = False, screen: Screen | None = None
+) -> Table | None:
+    """Every array of the table; None when there is no usable one. ``part`` and ``screen`` as in `read_session`."""
     columns = read_columns(document)
     if columns is None:
         return None
@@ -51,12 +58,13 @@ def read_table(document: Fields, programme: str, sensors: tuple[Sensor, ...]) ->
     check_unknown(columns, names)
     on_stand = programme == TWO_AXIS_STAND
     directions = _directions(columns)
+    raw = read_raw(document, columns, programme, sensors, part=part, screen=screen)
     return Table(
-        readings=_stack([_required(columns, name, WITHIN["<sensor>"]) for name in names], columns.rows),
+        readings=_readings(columns, names) if raw.readings is None else raw.readings,
         standard_errors=_standard_errors(columns, names, raw=document.has("sample_rate_hz")),
         flipped=_flipped(columns) if on_stand else None,
         beta=np.radians(_required(columns, "beta_deg")) if on_stand else None,
-        time=_time(columns),
+        time=raw.time,
         temperature=(_required if programme == THERMAL else _optional)(columns, "temperature_c"),
         vibration=_vibration(columns, len(names)),
         tilt_error=_tilt_error(columns, raw=document.has("sample_rate_hz")),
@@ -65,7 +73,15 @@ def read_table(document: Fields, programme: str, sensors: tuple[Sensor, ...]) ->
         position=columns.labels("position") if columns.has("position") else None,
         directions=directions,
         direction_sigma=_direction_sigma(document, columns),
+        sample_rate=raw.rate,
+        screening=raw.screening,
+        unscreened=raw.unscreened,
     )
+
+
+def _readings(columns: Columns, names: list[str]) -> Array:
+    """(R, m), of averaged positions."""
+    return _stack([_required(columns, name, WITHIN["<sensor>"]) for name in names], columns.rows)
 
 
 def _required(columns: Columns, name: str, within: Interval | None = None) -> Array:
@@ -126,18 +142,6 @@ def _flipped(columns: Columns) -> NDArray[np.bool_]:
         columns.report_missing("run")
         return np.zeros(columns.rows, dtype=bool)
     return columns.words("run", RUNS) == RUNS.index("flipped")
-
-
-def _time(columns: Columns) -> Array | None:
-    time = _optional(columns, "time_s")
-    if time is not None:
-        back = np.flatnonzero(np.diff(time) < 0) + 1
-        columns.problems.add_rows(
-            "time_s",
-            back.tolist(),
-            lambda j: say("{time} is earlier than the row before; keep the order measured", time=f"{time[j]:.10g}"),
-        )
-    return time
 
 
 def _directions(columns: Columns) -> Array | None:

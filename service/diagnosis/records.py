@@ -11,6 +11,7 @@ from service.models.records import ModelRevision
 from service.sessions.decision import Verdict
 from service.sessions.doubt import Reservation
 from service.sessions.records import DiagnosisState, StoredSession
+from service.sessions.words.noise import is_tenfold
 
 
 def state_of(diagnosis: Diagnosis) -> DiagnosisState:
@@ -18,7 +19,7 @@ def state_of(diagnosis: Diagnosis) -> DiagnosisState:
     left over to judge by."""
     if diagnosis.findings:
         return DiagnosisState.UNDECIDED if diagnosis.findings[0].alternatives else DiagnosisState.NAMED
-    if diagnosis.unexplained:
+    if diagnosis.unexplained or is_tenfold(diagnosis.noise):
         return DiagnosisState.UNEXPLAINED
     return DiagnosisState.UNDECIDED if diagnosis.calibration.fit.is_exact else DiagnosisState.NOTHING
 

@@ -13,9 +13,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from estimator.session import CalibrationSession, Sensor, Site, Stand, StandErrors
+from estimator.message import KEYS, Message, as_document, with_messages
+from estimator.session import CalibrationSession, ScreenFinding, Sensor, Site, Stand, StandErrors
 
-CLASSES = {cls.__name__: cls for cls in (CalibrationSession, Sensor, Site, Stand, StandErrors)}
+CLASSES = {cls.__name__: cls for cls in (CalibrationSession, ScreenFinding, Sensor, Site, Stand, StandErrors)}
 DTYPE_KINDS = "fiubU"
 """Numbers, truth values and texts of a fixed width."""
 DAMAGED = (ValueError, TypeError, LookupError, RecursionError)
@@ -77,7 +78,7 @@ def _plain(value: object, arrays: list[Array]) -> object:
         return {"items": {name: _plain(item, arrays) for name, item in value.items()}}
     if isinstance(value, tuple | list):
         return [_plain(item, arrays) for item in value]
-    return value
+    return as_document(value) if isinstance(value, Message) else value
 
 
 def _built(value: Any, arrays: tuple[Array, ...]) -> Any:
@@ -85,6 +86,8 @@ def _built(value: Any, arrays: tuple[Array, ...]) -> Any:
         return tuple(_built(item, arrays) for item in value)
     if not isinstance(value, dict):
         return value
+    if value.keys() <= KEYS:
+        return with_messages(value)
     if "array" in value:
         return arrays[value["array"]]
     if "items" in value:

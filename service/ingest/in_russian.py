@@ -17,6 +17,7 @@ STEPS = {
     "origin": "происхождение", "site": "место", "stand": "стенд", "mounting": "установка", "sensors": "датчики",
     "count_time_s": "время счёта, с",
     "counter": "счётчик", "sample_rate_hz": "частота отсчётов, Гц", "direction_sigma_deg": "сигма направлений, °",
+    "screening": "отклонённые проверки",
     "latitude_deg": "широта, °", "height_m": "высота, м", "gravity_m_s2": "ускорение силы тяжести, м/с²",
     "id": "номер", "alpha_deg": "угол наклона α, °", "chi_deg": "угол наклона χ, °",
     "sigma_arcsec": "сигма, угловые секунды", "sigma_count_time_s": "сигма времени счёта, с", "theta_x": "θx",

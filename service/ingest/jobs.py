@@ -1,11 +1,13 @@
 """Jobs of a reading process, by name. Only that process loads the libraries of the formats."""
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import polars as pl
 
 from estimator.reading import read_session
+from estimator.screening import Screen
 from estimator.session import CalibrationSession
 from service.ingest import hdf5, mat, parquet, xlsx
 from service.ingest.formats import HDF5, LOGS, MAT, PARQUET, XLSX
@@ -32,8 +34,9 @@ def recording(path: Path, filename: str) -> Iterator[object]:
     head = _head(rows, filename)
     yield head
     names = [sensor.name for sensor in head.sensors]
+    screen = Screen(head.sensors, frozenset(head.unscreened), head.sample_rate)
     for frame in _frames(rows, names, filename):
-        yield frame.to_numpy()
+        yield frame.to_numpy() if head.sample_rate is None else screen.readings(frame.to_numpy())
 
 
 def _head(rows: TableScan, filename: str) -> CalibrationSession:
@@ -94,8 +97,9 @@ def first_rows(content: Content, filename: str) -> object:
 def _read(content: bytes, filename: str, *, part: bool = False) -> object:
     if is_wrapped(content):
         mapping, table = unwrapped(content, filename)
-        document, where = document_of(table, filename, layout_of(mapping, filename))
-        return read_session(document, name=filename, most=in_force().extent, part=part, where=where)
+        document, where, found = document_of(table, filename, layout_of(mapping, filename))
+        session = read_session(document, name=filename, most=in_force().extent, part=part, where=where)
+        return replace(session, screening=(*found, *session.screening))
     if content.startswith(XLSX):
         document, where = xlsx.read_with_places(content, filename)
         return read_session(document, name=filename, most=in_force().extent, part=part, where=where)

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import takewhile
 from pathlib import Path
 from typing import Protocol
@@ -16,6 +16,8 @@ from estimator.long_logs import LongLog, average_long
 from estimator.reading import Extent, read_session
 from estimator.reading.csv_text import cell_of
 from estimator.reading.keys import COLUMNS
+from estimator.reading.problems import Problems
+from estimator.screening import Screen, Screening
 from estimator.session import CALIBRATIONS, Array, CalibrationSession
 from service.ingest.apart import progress_reporter
 from service.ingest.formats import PARQUET, may_be_log
@@ -232,6 +234,17 @@ class _Codes:
         return -1 if name in ("", "-1") else self.known.setdefault(name, len(self.known))
 
 
+@dataclass
+class _Passage:
+    """What passages through a log have shown of it as a whole."""
+
+    signs: dict[str, int] = field(default_factory=dict)
+    screening: Screening = ()
+    """Of the last whole passage."""
+    stands: bool = False
+    """Whether the times never advance."""
+
+
 @dataclass(frozen=True)
 class _Scan:
     """One log, scanned as often as its averages need it."""
@@ -240,13 +253,27 @@ class _Scan:
     document: Mapping[str, object]
     """Without its table."""
     filename: str
+    passage: _Passage = field(default_factory=_Passage)
 
     def parts(self) -> Iterator[CalibrationSession]:
-        """Some rows at a time, checked like those of any session."""
-        codes, offset = _Codes(), 0
+        """Some rows at a time, screened and checked like those of any session."""
+        codes, offset, screen = _Codes(), 0, None
         for frame in self._frames(self._needed()):
-            yield self._checked(self._table(frame, codes), offset)
+            table = self._table(frame, codes)
+            if screen is None:
+                head = self._checked({name: cells[:1] for name, cells in table.items()}, 0, None)
+                screen = Screen(head.sensors, frozenset(head.unscreened), head.sample_rate, self.passage.signs)
+            yield self._checked(table, offset, screen)
             offset += len(frame)
+        if screen is not None:
+            self._finish(screen)
+
+    def _finish(self, screen: Screen) -> None:
+        problems = Problems(self.filename)
+        screen.check(problems.add)
+        problems.raise_if_any()
+        self.passage.stands = screen.clock_stands
+        self.passage.signs, self.passage.screening = screen.signs, screen.findings
 
     def labels(self) -> Callable[[], Iterator[Array]] | None:
         """Labels of the rows: a position, else the settings of a stand, else none."""
@@ -261,7 +288,7 @@ class _Scan:
     def check_names(self) -> None:
         """Checks the first rows, with every column: raises for columns that belong to nothing."""
         for frame in self._frames(self.rows.names):
-            self._checked(self._table(frame.head(1), _Codes()), 0)
+            self._checked(self._table(frame.head(1), _Codes()), 0, None)
             return
 
     def _table(self, frame: pl.DataFrame, codes: _Codes) -> dict[str, object]:
@@ -300,10 +327,11 @@ class _Scan:
                 self.filename, "cannot be read to its end: {error}", "table", error=str(error)[:200]
             ) from error
 
-    def _checked(self, table: Mapping[str, object], offset: int) -> CalibrationSession:
+    def _checked(self, table: Mapping[str, object], offset: int, screen: Screen | None) -> CalibrationSession:
         """The rows from ``offset`` on; every problem names its row of the whole log."""
+        whole = {**self.document, "table": table}
         try:
-            return read_session({**self.document, "table": table}, name=self.filename, most=Extent(), part=True)
+            return read_session(whole, name=self.filename, most=Extent(), part=True, screen=screen)
         except FormatError as fault:
             problems = [Problem(p.field, p.message, p.row and p.row + offset) for p in fault.problems]
             raise FormatError(problems, self.filename) from fault
@@ -320,4 +348,14 @@ def ahead(frames: Iterator[pl.DataFrame]) -> Iterator[pl.DataFrame]:
 
 def _averaged(scan: _Scan) -> CalibrationSession:
     scan.check_names()
-    return average_long(LongLog(scan.parts, scan.labels()), residual_per_freedom, tilt_response)
+    log, signs = LongLog(scan.parts, scan.labels()), dict(scan.passage.signs)
+    try:
+        session = average_long(log, residual_per_freedom, tilt_response)
+    except SessionError:
+        if signs == scan.passage.signs:
+            raise
+        return _averaged(scan)
+    if signs != scan.passage.signs:  # what a late part shows of all is taken into account from the first on
+        return _averaged(scan)
+    time = None if scan.passage.stands else session.time
+    return replace(session, time=time, screening=(*scan.passage.screening, *session.screening))

@@ -4,7 +4,7 @@ A recording in service has none of its own: it is compared with its unit's calib
 what the recording shows.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from estimator.groups.fixed import calibrate_with
 from estimator.parity import ParityResult, parity_check
@@ -61,7 +61,8 @@ def calibrate(new: Checked, basis: CalibrationBasis) -> Calibrated:
     if basis.compared_with is None:
         return Calibrated(new, basis.model, _under(basis.model, new.session), None)
     found = ReferenceComparison(basis.compared_with, parity_check(new.session, basis.compared_with))
-    return Calibrated(new, basis.model, parity_calibration(found.result, found.reference), found)
+    moved = replace(parity_calibration(found.result, found.reference), screening=new.session.screening)
+    return Calibrated(new, basis.model, moved, found)
 
 
 def rests_on_model(programme: str) -> bool:

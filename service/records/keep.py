@@ -11,6 +11,7 @@ from estimator.allan import BlockNoise, allan_terms, rests_of
 from estimator.errors import SessionError
 from estimator.results import Calibration
 from estimator.session import IN_SERVICE, Array, CalibrationSession
+from estimator.static import filled
 from service.ingest import read_upload
 from service.ingest.checked import as_checked
 from service.ingest.stream import open_recording
@@ -74,8 +75,9 @@ def _noise(storage: Storage, stored: StoredSession) -> BlockNoise | None:
     session = read_upload(content, stored.filename)
     if not session.is_raw and isinstance(content, Path):
         session = thinned(content)
-    if not session.is_raw or not np.isfinite(session.readings).all():
+    if not session.is_raw:
         return None
+    session = replace(session, readings=filled(session.readings))
     rests = rests_of(session, _reference(storage, stored, session))
     return None if rests is None else allan_terms(rests)
 

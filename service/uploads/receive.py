@@ -11,7 +11,7 @@ from typing import Any
 
 from estimator.errors import Problem, SessionError
 from estimator.json_object import Json
-from estimator.message import changed, say
+from estimator.message import changed, joined, say
 from service.errors import RefusedError
 from service.ingest import in_turn, look_at, said_as_table
 from service.ingest.checked import Checked, check, plain_filename
@@ -234,7 +234,8 @@ def _store(store: Store, derivation: Deriving, received: Received, ready: _Ready
     stored = latest if latest is not None and latest.id == record.id else Sessions(store).get(record.id)
     details = {"unit": stored.unit, "verdict": stored.verdict.value, "revision": stored.revision}
     Audit(store).write(received.at, received.who, "upload", stored.id, details)
-    remark = retired_in_words(Register(store).get(stored.unit))
+    screened = (finding.message for finding in new.calibration.screening)
+    remark = joined(" ", filter(None, (retired_in_words(Register(store).get(stored.unit)), *screened)))
     return replace(receipt_of(stored, created=True), remark=remark), derived
 
 

@@ -116,14 +116,6 @@ def test_labels_that_change_all_the_time_are_refused():
         average_long(in_parts(log, 1000), residual_per_freedom, tilt_response)
 
 
-def test_a_time_that_goes_back_between_two_parts_is_named_with_its_row():
-    log = drifting()
-    log.time[1000:] -= 5.0
-    with pytest.raises(FormatError, match="earlier than the row before") as refused:
-        average_long(in_parts(log, 1000), residual_per_freedom, tilt_response)
-    assert refused.value.problems[0].row == 1001
-
-
 def test_a_column_that_ends_on_the_way_is_named():
     log = drifting()
     parts = cut(log, 1000)

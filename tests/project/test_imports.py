@@ -32,7 +32,7 @@ ESTIMATOR_LAYERS = (
     {"errors", "moments", "on_demand", "wording"},
     {"codec"},
     {"session"},
-    {"arrays", "content", "significance"},
+    {"arrays", "content", "screening", "significance"},
     {"least_squares", "rest_noise", "rotations"},
     {"applied_vector", "coverage", "parameters", "reading", "rest_tilt"},
     {"curves", "static"},

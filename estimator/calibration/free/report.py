@@ -137,4 +137,5 @@ def report(session: CalibrationSession, known: Knowledge, fit: Fit, gauge: str) 
         ),
         gauge=gauge,
         site=session.site,
+        screening=session.screening,
     )

@@ -26,13 +26,14 @@ from service.diagnosis.words.findings import UNEXPLAINED, headline_of, in_words,
 from service.kit.measures import THIN, leading_kind, number
 from service.sessions.records import DiagnosisState
 from service.sessions.words.advice import too_few
-from service.sessions.words.noise import but_wrong_errors, wrong_errors
+from service.sessions.words.noise import but_wrong_errors, is_tenfold, wrong_errors
 
 NOT_APPLICABLE = (
     "Not applicable to this programme: causes are looked for in calibrations, on a stand or in still orientations, and "
     "in alignments on a turntable."
 )
 NOTHING = "Nothing wrong found"
+FAR_BEYOND = "The readings scatter far beyond their noise, and no known cause explains it"
 NOTHING_LEFT = "Too few positions for a diagnosis"
 TAKEN_UP = "There are as many parameters as readings, so no cause can be found: add positions."
 MOST_FINDINGS = 3
@@ -93,7 +94,9 @@ def nothing_of(answer: DiagnosisAnswer) -> str:
         return say("{summary}. {fits}", summary=NOTHING_LEFT, fits=TAKEN_UP)
     if answer.noise:
         return say(
-            "{summary}{reservation}.", summary=NOTHING, reservation=but_wrong_errors(answer.noise, _kinds(answer))
+            "{summary}{reservation}.",
+            summary=_nothing(answer),
+            reservation=but_wrong_errors(answer.noise, _kinds(answer)),
         )
     return say("{summary}: the simulation explains the readings.", summary=NOTHING)
 
@@ -140,7 +143,12 @@ def headline(answer: DiagnosisAnswer) -> str:
         return headline_of(answer.structures)
     if answer.calibration.fit.is_exact:
         return NOTHING_LEFT
-    return say("{summary}{reservation}", summary=NOTHING, reservation=but_wrong_errors(answer.noise, _kinds(answer)))
+    reservation = but_wrong_errors(answer.noise, _kinds(answer))
+    return say("{summary}{reservation}", summary=_nothing(answer), reservation=reservation)
+
+
+def _nothing(answer: DiagnosisAnswer) -> str:
+    return FAR_BEYOND if is_tenfold(answer.noise) else NOTHING
 
 
 def what_to_do(answer: DiagnosisAnswer) -> str:

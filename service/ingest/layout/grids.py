@@ -3,7 +3,7 @@
 import csv
 import io
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -13,6 +13,7 @@ import polars as pl
 from numpy.typing import NDArray
 
 from estimator.message import say
+from estimator.screening import Screening
 from service.ingest import hdf5, logs, mat, parquet
 from service.ingest.foreign import require_table
 from service.ingest.formats import HDF5, MAT, PARQUET, XLSX
@@ -62,6 +63,8 @@ class Grid:
     """What a log states of the session."""
     titles: Mapping[str, Any] = field(default_factory=dict)
     """What the rows above a table state of it."""
+    screening: Screening = ()
+    """What was found in the samples of a log before they were put into rows."""
     skipped: frozenset[int] = frozenset()
     """Rows, from 0, that repeat the headings or are a title among the readings."""
 
@@ -79,18 +82,20 @@ class Grid:
         return say("line {line} of the file", line=line) if self.kind == "text" else ""
 
 
-def grid_of(content: bytes, filename: str, stated: Mapping[str, Any]) -> Grid:
-    """The table in a file; ``stated`` are the settings of ``taken`` that were chosen by hand."""
+def grid_of(content: bytes, filename: str, stated: Mapping[str, Any], declined: Collection[str] = ()) -> Grid:
+    """The table in a file; ``stated``: the settings of ``taken`` that were chosen by hand; ``declined``: what a log is
+    not screened for."""
     require_table(content, filename)
     if content.startswith(XLSX):
         return _workbook(content, filename, stated)
     for magic, read in ((PARQUET, _parquet), (HDF5, _hdf5), (MAT, _mat)):
         if content.startswith(magic):
             return read(content, filename)
-    log = logs.log_of(content, filename)
+    log = logs.log_of(content, filename, declined)
     if log is not None:
         grid = _named("log", log.columns)
-        return replace(grid, meanings=dict(zip(grid.headings, log.meanings, strict=True)), facts=log.facts)
+        meanings = dict(zip(grid.headings, log.meanings, strict=True))
+        return replace(grid, meanings=meanings, facts=log.facts, screening=log.screening)
     return _text(content, filename, stated)
 
 

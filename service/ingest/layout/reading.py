@@ -9,6 +9,7 @@ import numpy as np
 from estimator.errors import FormatError, Problem, problem_at
 from estimator.message import joined, say
 from estimator.reading.problems import Where, shown
+from estimator.screening import Screening, declined_by
 from service.ingest.layout.grids import Cell, Grid, grid_of, is_nothing, number_of
 from service.ingest.layout.mapping import ColumnMapping, Layout
 from service.ingest.layout.vocabulary import conversion, target_label
@@ -21,9 +22,9 @@ DAY = 86_400.0
 """s."""
 
 
-def document_of(content: bytes, filename: str, layout: Layout) -> tuple[dict[str, object], Where]:
-    """The session's document, and a function from field and row to the cell in the file."""
-    grid = grid_of(content, filename, layout.table)
+def document_of(content: bytes, filename: str, layout: Layout) -> tuple[dict[str, object], Where, Screening]:
+    """The session's document, a function from field and row to the cell in the file, and what a log's samples show."""
+    grid = grid_of(content, filename, layout.table, declined_by(layout.session.get("screening")) or ())
     problems = [*_other_columns(grid, layout), *_unit_problems(layout)]
     if problems:
         raise FormatError(problems, filename)
@@ -41,7 +42,7 @@ def document_of(content: bytes, filename: str, layout: Layout) -> tuple[dict[str
             return say("column {heading}", heading=shown(heading))
         return grid.place(places[field], rows[min(row, len(rows)) - 1] + 1)
 
-    return {**layout.session, "format": FORMAT, "table": table}, where
+    return {**layout.session, "format": FORMAT, "table": table}, where, grid.screening
 
 
 def _kept_rows(columns: Sequence[Sequence[Cell]]) -> list[int]:

@@ -1,6 +1,6 @@
 """The reader of a log by its first bytes, and what to do where its library is missing."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 
@@ -23,13 +23,13 @@ class Contents:
     """What it states of the session."""
 
 
-def log_of(content: bytes, filename: str) -> LogTable | None:
-    """The table of a log; None for any other file."""
+def log_of(content: bytes, filename: str, declined: Collection[str] = ()) -> LogTable | None:
+    """The table of a log, screened but for ``declined`` kinds; None for any other file."""
     module = next((module for magic, module in MODULES.items() if content.startswith(magic)), None)
     if module is None:
         return None
     log = _reader(module, filename)(content, filename)
-    return log_table(log.streams, filename, log.facts)
+    return log_table(log.streams, filename, log.facts, declined)
 
 
 def _reader(module: str, filename: str) -> Read:

@@ -5,18 +5,24 @@ left out for all. For white noise, averages of means are as good as averages of 
 what follows; a log of an hour becomes a table of moderate size.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from estimator.message import joined, say, say_count
-from estimator.session import ACCELEROMETER, GYROSCOPE
+from estimator.message import joined, say
+from estimator.screening import Screen, Screening
+from estimator.session import ACCELEROMETER, GYROSCOPE, Sensor
 from estimator.wording import counted
 from service.kit.limits import check_table, refusal
 
 Array = NDArray[np.float64]
+
+
+AXES = "xyz"
+AXIS = Sensor("", ACCELEROMETER, np.eye(3)[0], 1.0, "")
+"""A channel of a stream, but for its name and kind."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,12 +46,15 @@ class Stream:
         return "m/s²" if self.kind == ACCELEROMETER else "rad/s"
 
 
-def in_order(stream: Stream) -> Stream:
-    """Finite samples, by time: of two clocks in one log one may lag behind."""
-    sound = np.isfinite(stream.time) & np.isfinite(stream.values).all(axis=1)
+def in_order(stream: Stream, declined: Collection[str] = ()) -> tuple[Stream, Screening]:
+    """Its own readings, screened, by time: of two clocks in one log one may lag behind."""
+    named = [replace(AXIS, name=f"{stream.label} {axis}", kind=stream.kind) for axis in AXES]
+    screen = Screen(tuple(named), frozenset(declined), None)
+    values = screen.readings(stream.values)
+    sound = np.isfinite(stream.time) & np.isfinite(values).all(axis=1)
     order = np.flatnonzero(sound)[np.argsort(stream.time[sound], kind="stable")]
     temperature = None if stream.temperature is None else stream.temperature[order]
-    return Stream(stream.label, stream.kind, stream.time[order], stream.values[order], temperature)
+    return Stream(stream.label, stream.kind, stream.time[order], values[order], temperature), screen.findings
 
 
 RATE = 50.0
@@ -57,7 +66,6 @@ SLOWEST = 4.0
 """Samples a second of any stream at least: with fewer a rest cannot be recognised."""
 FEWEST = 100
 """Samples below which a stream counts as not logged throughout."""
-AXES = "xyz"
 
 
 @dataclass(frozen=True)
@@ -70,11 +78,16 @@ class LogTable:
     """Meaning of each column."""
     facts: dict[str, object]
     """What it states of the session: imu-session/1 without its table."""
+    screening: Screening = ()
+    """What was found in its samples."""
 
 
-def log_table(streams: Sequence[Stream], filename: str, facts: dict[str, object]) -> LogTable:
+def log_table(
+    streams: Sequence[Stream], filename: str, facts: dict[str, object], declined: Collection[str] = ()
+) -> LogTable:
     """All streams on one clock; FormatError where their times do not overlap, or there is no accelerometer."""
-    cleaned = [in_order(stream) for stream in streams]
+    screened = [in_order(stream, declined) for stream in streams]
+    cleaned = [stream for stream, _ in screened]
     ordered = [stream for stream in cleaned if len(stream.time) >= FEWEST]
     if not any(stream.kind == ACCELEROMETER for stream in ordered):
         raise refusal(
@@ -102,26 +115,19 @@ def log_table(streams: Sequence[Stream], filename: str, facts: dict[str, object]
     table = _table(ordered, _Clock(start, round(rate, 3), int(rows)))
     notes = [
         str(facts.get("notes", "")),
-        *_left_out(streams, cleaned),
+        *_left_out(cleaned),
         *_torn(len(table.columns["time [s]"]), int(rows)),
     ]
     text = joined(" ", filter(None, notes))
-    return replace(table, facts={**facts, **table.facts, **({"notes": text} if text else {})})
+    found = tuple(finding for _, findings in screened for finding in findings)
+    return replace(table, facts={**facts, **table.facts, **({"notes": text} if text else {})}, screening=found)
 
 
-def _left_out(streams: Sequence[Stream], cleaned: Sequence[Stream]) -> Iterator[str]:
-    for stream, clean in zip(streams, cleaned, strict=True):
-        if len(clean.time) < len(stream.time):
-            lost = len(stream.time) - len(clean.time)
-            yield say_count(
-                "{label}: {n} sample without a number left out.",
-                "{label}: {n} samples without a number left out.",
-                lost,
-                label=stream.label,
-            )
+def _left_out(cleaned: Sequence[Stream]) -> Iterator[str]:
+    for clean in cleaned:
         if len(clean.time) < FEWEST:
             yield say(
-                "{label} has {time} only and was left out.", label=stream.label, time=counted(len(clean.time), "sample")
+                "{label} has {time} only and was left out.", label=clean.label, time=counted(len(clean.time), "sample")
             )
 
 

@@ -44,7 +44,14 @@ from service.sessions.states import RecordState
 from service.sessions.words.conditions import MEANINGS, STATES, Condition, condition_of, state_in_words
 from service.sessions.words.curves import CurvesInWords, curves_in_words
 from service.sessions.words.motion import MotionLine, motions_in_words
-from service.sessions.words.readings import FitWords, bands_in_words, combination_in_words, fit_in_words, switched_on
+from service.sessions.words.readings import (
+    FitWords,
+    bands_in_words,
+    beside_screening,
+    combination_in_words,
+    fit_in_words,
+    switched_on,
+)
 
 NOTHING_KNOWN = Remedies()
 """Of a session that counts."""
@@ -160,7 +167,7 @@ def session_page(
         reservations=report.session.reservations,
         parameters=parameters,
         sensors=tuple(_sensor(s, parameters, judged, (coverage, units.get(s.name, ""))) for s in calibration.sensors),
-        fit=fit_in_words(calibration) if parity is None else agreement_in_words(parity),
+        fit=fit_in_words(calibration) if parity is None else beside_screening(agreement_in_words(parity), calibration),
         parity=None if parity is None else parity_view(parity),
         curves=curves_in_words(calibration),
         curve_charts=curve_charts(calibration),

@@ -123,6 +123,16 @@ NEAR = 1.15
 """Times below which a first decimal would not tell them from one."""
 
 
+TENFOLD = 10.0
+"""Times too small from which standard errors are no estimate of the scatter: nobody misjudges a noise by that much, so
+something else is in the readings."""
+
+
+def is_tenfold(noise: Sequence[NoiseScale]) -> bool:
+    """Whether the readings of any sensors scatter so far beyond their standard errors that something is unexplained."""
+    return any(scale.factor > TENFOLD for scale in noise)
+
+
 def wrong_errors(noise: Sequence[NoiseScale], kinds: Collection[str]) -> tuple[str, ...]:
     """``The stated standard errors are about 4 times too small.``; by kind where a session holds several,
     and whose they are where not all sensors'."""

@@ -1,6 +1,6 @@
 """How model and readings agree, in words. What fits or does not is a unit, so no other thing is said to."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isfinite, sqrt
 
 from estimator.message import joined, say, say_count
@@ -32,7 +32,12 @@ def fit_in_words(calibration: Calibration) -> FitWords:
     """What χ² and its probability say, and what to be careful of."""
     fit = calibration.fit
     headline = too_few(calibration) or _headline(fit)
-    return FitWords(headline, _detail(fit), (*_warnings(fit), *_open(calibration)))
+    return beside_screening(FitWords(headline, _detail(fit), (*_warnings(fit), *_open(calibration))), calibration)
+
+
+def beside_screening(words: FitWords, calibration: Calibration) -> FitWords:
+    """The same, first what was found in the raw rows that the readings were made of."""
+    return replace(words, warnings=(*(finding.message for finding in calibration.screening), *words.warnings))
 
 
 def bands_in_words(calibration: Calibration, times: float | None) -> str:
