@@ -87,7 +87,7 @@ class Document:
     order : attributes in the order in which they are written, properties among them; all fields where it is left out.
     keys : names that differ from the attribute's; ``axis.value`` is ``value`` in the object ``axis``.
     forms : by attribute.
-    optional : attributes that are left out where they are None.
+    optional : attributes that are left out where they are None or an empty tuple.
     earlier : a document of an earlier version as this one writes it, as far as defaults do not do.
     """
 
@@ -168,7 +168,7 @@ class Codec:
         document: Json = {"format": stated} if stated else {}
         for name, (*outer, last), form, is_optional in _attributes(kind):
             part = getattr(value, name)
-            if part is None and is_optional:
+            if is_optional and (part is None or (isinstance(part, tuple) and not part)):
                 continue
             holder = document
             for key in outer:

@@ -12,7 +12,7 @@ from estimator.codec import DEGREES, RUN, Document, named
 from estimator.coverage import coverage_factor
 from estimator.curves import ThermalCurves
 from estimator.json_object import Json
-from estimator.session import Array
+from estimator.session import Array, SetAside
 
 ARCSEC = np.pi / 180 / 3600
 """rad."""
@@ -181,13 +181,13 @@ class Calibration(
     format="imu-calibration/1",
     order=(
         "unit", "method", "sensors", "fit", "gauge", "names", "units", "covariance", "repeatability", "residuals",
-        "parity", "thermal",
+        "parity", "thermal", "set_aside",
     ),
     keys={
         "names": "covariance.names", "units": "covariance.units",
         "covariance": "covariance.total", "repeatability": "covariance.repeatability",
     },
-    optional=("parity", "thermal"),
+    optional=("parity", "thermal", "set_aside"),
 ):  # fmt: skip
     """The calibration of one block: m sensors, P = 5 m parameters with their joint covariance."""
 
@@ -211,6 +211,8 @@ class Calibration(
     """``imu-parity/1``, where the calibration is a reference moved by what a recording shows."""
     thermal: ThermalCurves | None = None
     """Bias and scale factor over temperature, of a thermal programme; everything else is at its reference."""
+    set_aside: tuple[SetAside, ...] = ()
+    """Gross readings that took no part."""
 
     def sensor(self, name: str) -> SensorCalibration:
         """The calibration of the sensor called ``name``; KeyError if there is none."""

@@ -129,6 +129,7 @@ class Reports:
                 enlarged_by=float(np.sqrt(solved.factor[k])),
             ),
             gauge="stand",
+            set_aside=session.set_aside,
         )
 
 

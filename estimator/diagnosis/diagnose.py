@@ -17,11 +17,12 @@ from estimator.diagnosis.explanation.gain import gain
 from estimator.diagnosis.explanation.record_findings import (
     clip_findings,
     entry_finding,
+    gross_findings,
     record_error_finding,
     wrong_record,
 )
 from estimator.diagnosis.explanation.temperature import temperatures, with_temperature
-from estimator.diagnosis.record.clipping import Clip, earlier_baseline, unclipped
+from estimator.diagnosis.record.clipping import Clip, earlier_baseline, unclipped, weightless
 from estimator.diagnosis.record.implausible import ImplausibleAxes, implausible_axes
 from estimator.diagnosis.record.nominal import wrong_entry
 from estimator.diagnosis.record.record_error import RecordError
@@ -85,7 +86,7 @@ def put_right(
     """The session and its history fitted, the session's record corrected first."""
     rows = averaged(session)
     refuse_silent(rows)
-    clips, whole = unclipped(rows, catalogue)
+    clips, whole = unclipped(weightless(rows), catalogue)
     earlier = tuple(earlier_baseline(switched_on_like(h, session), tuple(catalogue)) for h in history)
     errors, right = undo_record_errors(baseline_of(whole), earlier, catalogue)
     return PutRight(rows, tuple(clips), tuple(errors), right, earlier)
@@ -116,6 +117,7 @@ def diagnosed(session: PutRight, catalogue: Sequence[Cause]) -> Diagnosis:
     return Diagnosis(
         unit=right.session.unit,
         findings=(
+            *gross_findings(rows.set_aside, rows),
             *clip_findings(session.clips, rows, state.baseline, calibration),
             *(record_error_finding(e, rows) for e in session.errors),
             *([] if entry is None else [entry_finding(entry)]),

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from estimator.calibration.gross_slips import in_words
 from estimator.causes.sensor import ReadingOutlier
 from estimator.diagnosis.explanation.naming import merged, named_cause
 from estimator.diagnosis.explanation.rivals import CREDIBLE, SHOWN
@@ -16,9 +17,33 @@ from estimator.diagnosis.record.turned import LEAST
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.results import Finding, Rival, Structure
 from estimator.forward import measured
-from estimator.message import say
+from estimator.message import joined, say
 from estimator.results import Calibration
-from estimator.session import ACCELEROMETER, CalibrationSession
+from estimator.session import ACCELEROMETER, CalibrationSession, SetAside
+
+OUTLIER = ReadingOutlier()
+
+
+def gross_findings(readings: Sequence[SetAside], session: CalibrationSession) -> tuple[Finding, ...]:
+    """Readings of a session that were set aside, as one finding; they took no part in anything else."""
+    known = [r for r in readings if np.isfinite(r.size)]
+    if not known:
+        return ()
+    found = merged([(OUTLIER, gross_finding(r, session)) for r in known])
+    return tuple(replace(f, advice=joined(" ", map(in_words, known))) for f in found)
+
+
+def gross_finding(reading: SetAside, session: CalibrationSession) -> Finding:
+    """One of them."""
+    kinds = {sensor.name: sensor.kind for sensor in session.sensors}
+    return replace(
+        named_cause(OUTLIER, (reading.sensor,), 0.0, reading.strength),
+        amplitude=(reading.size,),
+        sigma=(reading.sigma,),
+        units=("m/s²" if kinds[reading.sensor] == ACCELEROMETER else "rad/s",),
+        nonlinear_each=({"row": float(reading.row)},),
+        ranking=(Rival(OUTLIER.identifier, (reading.sensor,), 1.0, reading.strength),),
+    )
 
 
 def clip_findings(

@@ -83,6 +83,14 @@ class Clip:
         return replace(session, readings=readings, standard_errors=errors)
 
 
+def weightless(session: CalibrationSession) -> CalibrationSession:
+    """The session with the readings that were set aside left without weight, yet with a finite standard error: what is
+    weighed by it stays finite."""
+    free = np.broadcast_to(FREE * np.ptp(session.readings, axis=0), session.readings.shape)
+    errors = np.where(np.isinf(session.standard_errors), free, session.standard_errors)
+    return replace(session, standard_errors=errors) if session.set_aside else session
+
+
 def unclipped(session: CalibrationSession, catalogue: Sequence[Cause]) -> tuple[list[Clip], CalibrationSession]:
     """The sensors clipped in an averaged session, and the corrected session."""
     cause = next((c for c in catalogue if c.clips), None)
@@ -161,4 +169,4 @@ def earlier_baseline(session: CalibrationSession, catalogue: tuple[Cause, ...]) 
     ------
     ScheduleError : the session cannot be calibrated at all.
     """
-    return baseline_of(unclipped(averaged(session), catalogue)[1])
+    return baseline_of(unclipped(weightless(averaged(session)), catalogue)[1])

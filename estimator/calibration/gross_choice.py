@@ -1,0 +1,115 @@
+"""Which readings are gross: far outside the noise and everything smooth, and alone in their row and sensor."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from estimator.calibration.gross_linear import Predicted
+from estimator.calibration.gross_slips import PLAIN, slip_of
+from estimator.session import ACCELEROMETER, TWO_AXIS_STAND, Array, CalibrationSession
+
+GROSS = 12.0
+"""Standard errors beyond which a reading is gross: twice what chance does to the largest of a million readings; what is
+smaller is weighed against other causes."""
+
+APART = 3.0
+"""Factor by which it must lie beyond the largest deviation that is left: heavy tails and smooth effects leave no gap."""
+
+BESIDE = 5.0
+"""Standard errors by which another sensor shows a row too: chance does it once in a million readings."""
+
+MOST = 0.1
+"""Part of a sensor's readings that may be gross without a plain slip: beyond it the sensor or the model is at fault."""
+
+CUT = 0.05
+"""Part of a row's samples at an end of the channel's range from which its mean is a clipped one."""
+
+
+@dataclass(frozen=True, eq=False)
+class Choice:
+    """What of a session is set aside. R rows, m sensors."""
+
+    at: Array
+    """(R, m) bool."""
+    predicted: Predicted
+    slips: Mapping[tuple[int, int], str]
+    """By row and sensor."""
+    suspects: Mapping[int, tuple[int, ...]] = field(default_factory=dict)
+    """By row that cannot tell which of its readings is wrong: sensors, the likeliest first; all the row is out."""
+
+    def slip(self, row: int, sensor: int) -> str:
+        """The likely one of a reading."""
+        return self.slips[row, sensor]
+
+
+def chosen(
+    session: CalibrationSession, predicted: Predicted, suspects: Mapping[int, tuple[int, ...]] | None = None
+) -> Choice:
+    """The readings to set aside, by what was ``predicted``; ``suspects`` by row as in `Choice`."""
+    far = apart(np.abs(predicted.t)) & ~clipped(session, predicted)
+    slips = {(int(j), int(i)): slip_of(session, predicted, int(j), int(i)) for j, i in np.argwhere(far)}
+    plain = np.zeros(far.shape, dtype=bool)
+    for place, slip in slips.items():
+        plain[place] = slip in PLAIN
+    far &= plain | ~(shown_by_rows(session, predicted) | lasting(session, far, predicted))
+    few = (far & ~plain).sum(axis=0) <= np.maximum(1, MOST * len(far))
+    at = far & (plain | few)
+    doubtful = {j: who for j, who in (suspects or {}).items() if at[j, list(who)].any()}
+    felt = np.array([s.kind == ACCELEROMETER for s in session.sensors])
+    for j, who in doubtful.items():
+        at[j] |= felt
+        slips[j, who[0]] = slips.get((j, who[0]), "unknown")
+    return Choice(at, predicted, slips, doubtful)
+
+
+def apart(size: Array) -> Array:
+    """(R, m) bool: deviations (R, m), standard errors, of each sensor beyond a gap that nothing fills."""
+    size = np.nan_to_num(size)
+    ordered = np.sort(size, axis=0)
+    below = np.vstack([np.zeros(ordered.shape[1]), ordered[:-1]])
+    opens = (ordered >= GROSS) & (ordered >= APART * below)
+    least = np.where(opens, ordered, np.inf).min(axis=0)
+    return np.asarray(size >= least)
+
+
+def clipped(session: CalibrationSession, predicted: Predicted) -> Array:
+    """(R, m) bool: readings at an end of their channel's range, several or by the raw log, expected beyond it."""
+    u, beyond = session.readings, np.nan_to_num(predicted.value - session.readings)
+    found = np.zeros(u.shape, dtype=bool)
+    for k, (end, outward) in enumerate(((u.max(axis=0), beyond > 0), (u.min(axis=0), beyond < 0))):
+        stands = u == end
+        at_end = stands & (stands.sum(axis=0) > 1)
+        if session.at_ends is not None:
+            at_end |= session.at_ends[..., k] >= CUT
+        short = np.nan_to_num(np.abs(predicted.t)) < BESIDE
+        found |= at_end & np.where(at_end, outward | short, True).all(axis=0)
+    return found
+
+
+def shown_by_rows(session: CalibrationSession, predicted: Predicted) -> Array:
+    """(R, m) bool: rows on a stand that at least half of a kind's sensors show, two or more: the stand's, or the
+    record's. In unknown orientations a row of its own direction takes up what all sensors show."""
+    shows, kinds = np.nan_to_num(np.abs(predicted.t)) > BESIDE, np.array([s.kind for s in session.sensors])
+    rows = np.zeros(shows.shape, dtype=bool)
+    for kind in np.unique(kinds) if session.programme == TWO_AXIS_STAND else ():
+        alike = kinds == kind
+        count = shows[:, alike].sum(axis=1)
+        rows[:, alike] = (count >= max(2.0, alike.sum() / 2))[:, None]
+    return rows
+
+
+def lasting(session: CalibrationSession, far: Array, predicted: Predicted) -> Array:
+    """(R, m) bool: readings off to one side in neighbouring rows up to an end of a run, as after a jump or in
+    warm-up."""
+    R, m = far.shape
+    ends = np.zeros(R + 1, dtype=bool)
+    ends[[0, R]] = True
+    if session.flipped is not None:
+        ends[1:-1] = np.diff(session.flipped)
+    side, found = np.where(far, np.sign(predicted.t), 0.0), np.zeros(far.shape, dtype=bool)
+    for i in range(m):
+        edges = np.flatnonzero(ends | np.r_[True, np.diff(side[:, i]) != 0, True])
+        for first, stop in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True):
+            found[first:stop, i] = side[first, i] != 0 and stop - first > 1 and bool(ends[first] or ends[stop])
+    return found
