@@ -17,7 +17,7 @@ import numpy as np
 
 from estimator.applied_vector import EARTH_RATE, STANDARD_GRAVITY
 from estimator.calibration.gross_choice import Choice, chosen
-from estimator.calibration.gross_linear import Predicted, harmonics, live, nothing_predicted, regression, stands_out
+from estimator.calibration.gross_linear import Predicted, harmonics, live, nothing_predicted, regression, sticks_out
 from estimator.calibration.gross_slips import stuck
 from estimator.on_demand import function_on_demand
 from estimator.session import ACCELEROMETER, TWO_AXIS_STAND, Array, CalibrationSession, SetAside
@@ -36,7 +36,8 @@ def without_gross(sessions: Sequence[CalibrationSession]) -> list[CalibrationSes
     if first.programme != TWO_AXIS_STAND:
         return [session if session.set_aside else in_orientations(session) for session in sessions]
     basis = harmonics(first)
-    suspicious = stands_out(basis, np.stack([s.readings for s in sessions]), np.stack([stated(s) for s in sessions]))
+    readings = np.stack([session.readings for session in sessions])
+    suspicious = sticks_out(basis, readings, np.stack([stated(session) for session in sessions])) | stuck(readings).any(axis=-2)
     return [
         on_stand(session, basis) if doubt and not session.set_aside else session
         for session, doubt in zip(sessions, suspicious.any(axis=-1), strict=True)
@@ -59,7 +60,7 @@ def in_orientations(session: CalibrationSession) -> CalibrationSession:
             warmth = session.temperature - session.temperature.mean()
             courses += [warmth, warmth**2]
         basis, errors = live(np.column_stack(courses)), stated(session)
-        if stands_out(basis, u[None], errors[None])[0, gyro].any():
+        if sticks_out(basis, u[None], errors[None])[0, gyro].any():
             of_gyros = regression(basis, u[:, gyro], errors[:, gyro], stuck(u)[:, gyro])
             predicted = predicted.with_sensors(gyro, of_gyros)
     if not gyro.all():

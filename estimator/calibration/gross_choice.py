@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from estimator.calibration.gross_linear import Predicted
-from estimator.calibration.gross_slips import PLAIN, slip_of
+from estimator.calibration.gross_slips import PLAIN, same, slip_of, stuck
 from estimator.session import ACCELEROMETER, TWO_AXIS_STAND, Array, CalibrationSession
 
 GROSS = 12.0
@@ -19,8 +19,9 @@ APART = 3.0
 BESIDE = 5.0
 """Standard errors by which another sensor shows a row too: chance does it once in a million readings."""
 
-MOST = 0.1
-"""Part of a sensor's readings that may be gross without a plain slip: beyond it the sensor or the model is at fault."""
+MOST, SOME = 0.1, 3
+"""Part and number of a sensor's readings that may be gross without a plain slip: beyond both the sensor or the model is
+at fault."""
 
 CUT = 0.05
 """Part of a row's samples at an end of the channel's range from which its mean is a clipped one."""
@@ -47,13 +48,14 @@ def chosen(
     session: CalibrationSession, predicted: Predicted, suspects: Mapping[int, tuple[int, ...]] | None = None
 ) -> Choice:
     """The readings to set aside, by what was ``predicted``; ``suspects`` by row as in `Choice`."""
-    far = apart(np.abs(predicted.t)) & ~clipped(session, predicted)
+    held = standing_still(session, predicted)
+    far = (apart(np.abs(np.where(held, 0.0, predicted.t))) | held) & ~clipped(session, predicted)
     slips = {(int(j), int(i)): slip_of(session, predicted, int(j), int(i)) for j, i in np.argwhere(far)}
     plain = np.zeros(far.shape, dtype=bool)
     for place, slip in slips.items():
         plain[place] = slip in PLAIN
     far &= plain | ~(shown_by_rows(session, predicted) | lasting(session, far, predicted))
-    few = (far & ~plain).sum(axis=0) <= np.maximum(1, MOST * len(far))
+    few = (far & ~plain).sum(axis=0) <= np.maximum(SOME, MOST * len(far))
     at = far & (plain | few)
     doubtful = {j: who for j, who in (suspects or {}).items() if at[j, list(who)].any()}
     felt = np.array([s.kind == ACCELEROMETER for s in session.sensors])
@@ -71,6 +73,20 @@ def apart(size: Array) -> Array:
     opens = (ordered >= GROSS) & (ordered >= APART * below)
     least = np.where(opens, ordered, np.inf).min(axis=0)
     return np.asarray(size >= least)
+
+
+def standing_still(session: CalibrationSession, predicted: Predicted) -> Array:
+    """(R, m) bool: stretches of one reading in which it should have changed, without the row that it stayed at."""
+    u, equal = session.readings, stuck(session.readings)
+    found = np.zeros(u.shape, dtype=bool)
+    for i in np.flatnonzero(equal.any(axis=0)).tolist():
+        t, value, sigma = predicted.t[:, i], predicted.value[:, i], predicted.sigma[:, i]
+        edges = np.flatnonzero(np.r_[True, equal[1:, i] != equal[:-1, i], True] | np.r_[True, ~same(u)[:, i], True])
+        for first, stop in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True):
+            moves = np.ptp(value[first:stop]) > GROSS * np.max(sigma[first:stop])
+            if equal[first, i] and moves and np.max(np.abs(t[first:stop])) > GROSS:
+                found[first + int(abs(t[first]) <= BESIDE) : stop, i] = True
+    return found
 
 
 def clipped(session: CalibrationSession, predicted: Predicted) -> Array:
@@ -100,7 +116,7 @@ def shown_by_rows(session: CalibrationSession, predicted: Predicted) -> Array:
 
 
 def lasting(session: CalibrationSession, far: Array, predicted: Predicted) -> Array:
-    """(R, m) bool: readings off to one side in neighbouring rows up to an end of a run, as after a jump or in
+    """(R, m) bool: readings off alike, to one side, in neighbouring rows up to an end of a run: as after a jump, or in
     warm-up."""
     R, m = far.shape
     ends = np.zeros(R + 1, dtype=bool)
@@ -109,7 +125,8 @@ def lasting(session: CalibrationSession, far: Array, predicted: Predicted) -> Ar
         ends[1:-1] = np.diff(session.flipped)
     side, found = np.where(far, np.sign(predicted.t), 0.0), np.zeros(far.shape, dtype=bool)
     for i in range(m):
-        edges = np.flatnonzero(ends | np.r_[True, np.diff(side[:, i]) != 0, True])
+        steps = np.abs(np.diff(np.log(np.abs(np.where(far[:, i], predicted.t[:, i], 1.0)))))
+        edges = np.flatnonzero(ends | np.r_[True, (np.diff(side[:, i]) != 0) | (steps > np.log(APART)), True])
         for first, stop in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True):
             found[first:stop, i] = side[first, i] != 0 and stop - first > 1 and bool(ends[first] or ends[stop])
     return found

@@ -9,6 +9,7 @@ Source: Cook & Weisberg 1982, Residuals and Influence in Regression, 2.2; Schlos
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import stdtrit
 
 from estimator.calibration.analytic import VANISHES
 from estimator.session import Array, CalibrationSession
@@ -18,6 +19,9 @@ AGREES = 5.0
 
 SUSPICIOUS = 4.0
 """Standard errors of the largest residual, and times the stated variance, from which a robust fit is worth its time."""
+
+RARE = 1e-3
+"""Chance of a largest residual from which it is, too."""
 
 STEPS = 40
 """Of reweighting towards least absolute deviations; half of them are usual."""
@@ -86,17 +90,23 @@ def live(columns: Array) -> Array:
     return np.asarray(left[:, size > VANISHES * size[0]])
 
 
-def stands_out(basis: Array, y: Array, stated: Array) -> Array:
-    """(S, m) bool: sensors among whose readings y (S, R, m) something stands out of a plain fit in a basis (R, p), or
-    whose fit leaves more than the ``stated`` (S, R, m) standard errors, NaN where there are none."""
-    leverage = (basis**2).sum(axis=1)[:, None]
-    freedom = max(len(basis) - basis.shape[1], 1)
+def sticks_out(basis: Array, y: Array, stated: Array) -> Array:
+    """(..., m) bool: sensors among whose readings y (..., R, m) one stands out of a plain fit in a basis (R, p) by the
+    others' scatter, several do by the scatter of the middle ones, or whose fit leaves more than the ``stated`` (..., R,
+    m) standard errors, NaN where there are none."""
+    R, p = basis.shape
+    if R - p < FREEDOM:
+        return np.zeros((*y.shape[:-2], y.shape[-1]), dtype=bool)
     rest = y - basis @ (basis.T @ y)
-    size = np.abs(rest) / np.sqrt(np.maximum(1.0 - leverage, TAKEN))
-    usual = np.sort(size, axis=1)[:, (len(basis) + basis.shape[1]) // 2] / HALF
-    noise = np.maximum(usual, np.nan_to_num(np.median(stated, axis=1)))
-    excess = ((rest / stated) ** 2).sum(axis=1) / freedom
-    return np.asarray((size.max(axis=1) > SUSPICIOUS * noise) | (excess > SUSPICIOUS))
+    size = np.abs(rest) / np.sqrt(np.maximum(1.0 - (basis**2).sum(axis=1)[:, None], TAKEN))
+    total, largest = (rest**2).sum(axis=-2), size.max(axis=-2)
+    noise = np.nan_to_num(np.median(stated, axis=-2))
+    usual = np.maximum(np.sort(size, axis=-2)[..., (R + p) // 2, :] / HALF, noise)
+    remaining = np.maximum(total - largest**2, (TAKEN * largest) ** 2 + np.finfo(float).tiny)
+    spread = np.maximum(np.sqrt(remaining / (R - p - 1)), noise)
+    rare = largest > spread * stdtrit(R - p - 1, 1.0 - RARE / (2 * R))
+    excess = (noise > 0) & (total > SUSPICIOUS * noise**2 * (R - p))
+    return np.asarray(rare & (largest > 0) | (largest > SUSPICIOUS * usual) | excess)
 
 
 def regression(basis: Array, y: Array, stated: Array, left_out: Array) -> Predicted:

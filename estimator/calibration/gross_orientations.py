@@ -1,9 +1,10 @@
 """What each accelerometer should read where the orientations are unknown: a robust fit of the whole block.
 
-The readings' weights are Cauchy's until the fit has left what does not belong, then one or nought: every reading is
-held against the fit without it, until none changes sides. A reading of a row that has but two others to compare with
-cannot be told from these: then all of the row that may be wrong are suspected.
-Source: Holland & Welsch 1977, Commun. Stat. A6, 813 (Cauchy weights); Baarda 1968 (the deletion residual's variance).
+The fit begins from the rows that agree best, loses in every other row the readings that do not fit together, and then
+holds every reading against the fit without it, until none changes sides. A reading of a row that has but two others to
+compare with cannot be told from these: then all of the row that may be wrong are suspected.
+Source: Rousseeuw & Van Driessen 2006, Data Min. Knowl. Disc. 12, 29 (least trimmed squares, concentration); Baarda 1968
+(the deletion residual's variance).
 """
 
 from dataclasses import dataclass, replace
@@ -11,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from estimator.applied_vector import gravity
+from estimator.arrays import unit
 from estimator.calibration.free import accelerometer_rows
 from estimator.calibration.free.model import ModelRows, Unknowns, jacobian, linearise, predicted
 from estimator.calibration.free.noise import scaled
@@ -27,17 +29,27 @@ from estimator.calibration.gross_linear import (
     TAKEN,
     Predicted,
     live,
+    sticks_out,
 )
-from estimator.calibration.gross_slips import PLAIN, slip_of
+from estimator.calibration.gross_slips import PLAIN, SIGN, slip_of
 from estimator.calibration.noise import ALIKE
 from estimator.errors import ScheduleError
 from estimator.session import Array, CalibrationSession
 
-CAUCHY = 2.385
-"""Standard deviations at which Cauchy's weight is a half: 95 % efficient on normal noise."""
+CORE = 0.7
+"""Part of the rows that the fit is begun from: a tenth of one sensor's readings, or three rows of twelve, stay out."""
 
-REWEIGHTED = 15
-"""Of the fit; ten are usual."""
+FEW = 6
+"""Rows that a beginning is made from: they tell a sphere in space, and a handful of them is likely to be sound."""
+
+BEGUN = 12
+"""Beginnings; of six rows a third are sound even where a sixth of all are not."""
+
+SPREAD = 2.0
+"""Times the noise that the rows that agree best show: of normal numbers, the 70 % nearest zero have half the sigma."""
+
+CONCENTRATED = 3
+"""Steps of concentration on the rows that agree best; Rousseeuw and Van Driessen take two."""
 
 LEAST = 1e-9
 """Least one sigma, relative to g: simulated readings may have no noise."""
@@ -45,8 +57,11 @@ LEAST = 1e-9
 TRIED = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)]) / np.sqrt(3.0)
 """(8, 3) directions that the orientation of a row is looked for from, one an octant, dimensionless."""
 
-TURNED = 25
-"""Steps of that look; Gauss–Newton takes five."""
+TURNED = 12
+"""Steps of that look; Gauss–Newton takes five …"""
+
+STEP = 0.5
+"""… none longer than this, rad."""
 
 SEEN = 0.01
 """Share of a reading that parity must show to be judged by it: a tenth of its size."""
@@ -100,9 +115,10 @@ def fit_robustly(block: Block, left_out: Array) -> BlockFit | None:
     if spare < FREEDOM:
         return None
     quadratic = 2 * spare > R * (k - 2)
-    taken = 1.0 - spare / (R * k)
-    agrees, unknowns = begun(rows, ~left_out, quadratic, taken)
-    seen, fit = set[bytes](), refitted(block, unknowns, agrees, quadratic)
+    core, begin = core_of(rows, left_out.any(axis=1))
+    fit = refitted(block, begin, np.tile(core[:, None], (1, k)), quadratic=False)
+    fit = refitted(block, *row_by_row(block, fit, left_out), quadratic)
+    seen = set[bytes]()
     for _ in range(ROUNDS):
         seen.add(fit.agrees.tobytes())
         t = fit.predicted.t
@@ -111,6 +127,66 @@ def fit_robustly(block: Block, left_out: Array) -> BlockFit | None:
             break
         fit = refitted(block, fit.unknowns, now, quadratic)
     return fit
+
+
+def core_of(rows: ModelRows, doubtful: Array) -> tuple[Array, Unknowns]:
+    """(R,) bool: the rows that agree best, and a linear fit of them: least trimmed squares over whole rows, begun from
+    the nominal values and from a few rows at a time; ``doubtful`` (R,) bool rows are in none of them."""
+    R, k = rows.y.shape
+    free = np.flatnonzero(~doubtful)
+    h = min(int(np.ceil(CORE * R)), len(free))
+    rng = np.random.default_rng(0)
+    nominal = Unknowns(np.zeros(k), np.zeros(k), np.zeros(k), rows.nominal_axes, rows.directions)
+    begins = [nominal] + [linear_fit(rows, rng.choice(free, min(FEW, h), replace=False)) for _ in range(BEGUN)]
+    best, least = (free[:h], nominal), np.inf
+    for unknowns in begins:
+        for _ in range(CONCENTRATED):
+            core = free[np.argsort(row_squares(rows, unknowns)[free])[:h]]
+            unknowns = linear_fit(rows, core)
+        total = float(np.sort(row_squares(rows, unknowns)[free])[:h].sum())
+        if total < least:
+            best, least = (core, unknowns), total
+    core, unknowns = best
+    directions = unit((rows.y - unknowns.offset) @ np.linalg.pinv(sensitivity(unknowns)).T)
+    return np.isin(np.arange(R), core), replace(unknowns, directions=directions)
+
+
+def linear_fit(rows: ModelRows, some: Array) -> Unknowns:
+    """Parameters by some rows (n,) alone."""
+    return start(ModelRows(rows.y[some], rows.sigma[some], rows.directions[some], rows.prior[some], rows.nominal_axes))
+
+
+def sensitivity(unknowns: Unknowns) -> Array:
+    """(k, 3) change of the readings with the specific force, relative."""
+    return np.exp(unknowns.log_scale)[:, None] * unknowns.axes
+
+
+def row_squares(rows: ModelRows, unknowns: Unknowns) -> Array:
+    """(R,) squared residuals of every row, in g², its orientation found linearly."""
+    sensitive = sensitivity(unknowns)
+    directions = unit((rows.y - unknowns.offset) @ np.linalg.pinv(sensitive).T)
+    return np.asarray(((rows.y - unknowns.offset - directions @ sensitive.T) ** 2).sum(axis=1))
+
+
+def row_by_row(block: Block, fit: BlockFit, left_out: Array) -> tuple[Unknowns, Array]:
+    """The fit's unknowns with every row's own orientation, and (R, k) bool the readings that agree in it: a row that does
+    not fit together loses one reading after the other, as long as two are left."""
+    R, k = block.rows.y.shape
+    agrees, noise = ~left_out, np.where(left_out, np.inf, SPREAD * fit.sigma)
+    placed = turned(block.rows.weighted(noise), fit.unknowns)
+    square = (((block.rows.y - predicted(placed)) / noise) ** 2).sum(axis=1)
+    directions = placed.directions.copy()
+    for j in np.flatnonzero(square > k + AGREES**2):
+        off = ~agrees[j]
+        while k - off.sum() > 2:
+            tried = without_each(block, fit, j, off, SPREAD)
+            directions[j] = tried.direction[-1]
+            if tried.whole <= k + AGREES**2:
+                break
+            i = int(np.argmin(np.where(off, np.inf, tried.square)))
+            directions[j], off[i] = tried.direction[i], True
+        agrees[j] = ~off
+    return replace(fit.unknowns, directions=directions), agrees
 
 
 def refitted(block: Block, unknowns: Unknowns, agrees: Array, quadratic: bool) -> BlockFit:
@@ -136,11 +212,6 @@ def begun(rows: ModelRows, free: Array, quadratic: bool, taken: float) -> tuple[
         middle = max(float(np.quantile(size[free], 0.5 + taken / 2)) / HALF, LEAST)
         weight = np.where(free, 1.0 / (1.0 + (size / (CAUCHY * middle)) ** 2), 0.0)
     return free & (size <= AGREES * middle), unknowns
-
-
-def with_weight(rows: ModelRows, weight: Array) -> Array:
-    """(R, k) sigma, relative to g, of readings with weights (R, k) of one to nought."""
-    return np.where(weight > 0, rows.sigma / np.sqrt(np.where(weight > 0, weight, 1.0)), np.inf)
 
 
 def held_against(rows: ModelRows, solution: Solution, agrees: Array, floor: Array) -> tuple[Array, Array, Array]:
@@ -170,44 +241,53 @@ def held_against(rows: ModelRows, solution: Solution, agrees: Array, floor: Arra
     return np.where(judged, value, np.nan), np.where(judged, sigma, np.nan), scale
 
 
+def turned(rows: ModelRows, unknowns: Unknowns) -> Unknowns:
+    """Every row's orientation at its best, the parameters as they are."""
+    still = np.zeros(5 * rows.y.shape[1])
+    for _ in range(TURNED):
+        turns = linearise(rows, unknowns).alone
+        length = np.abs(turns).max(axis=1, keepdims=True)
+        unknowns = unknowns.stepped(still, turns * np.minimum(1.0, STEP / np.maximum(length, STEP)))
+    return unknowns
+
+
 @dataclass(frozen=True, eq=False)
-class Rivals:
-    """A row without each of its k readings in turn."""
+class WithoutEach:
+    """A row of k readings without each of them in turn, and last without none."""
 
     square: Array
     """(k,) χ² of the others."""
+    whole: float
+    """χ² of all."""
     value: Array
     """(k,) the reading by the others, in nominal scale times g."""
     direction: Array
-    """(k, 3) the orientation by the others, unit vectors."""
+    """(k + 1, 3) the orientation, unit vectors."""
 
 
-def rivals(block: Block, fit: BlockFit, row: int, off: Array) -> Rivals:
-    """Of a row; ``off`` (k,) bool: readings that take no part anyway."""
-    k = block.rows.y.shape[1]
-    square, value, direction = np.empty(k), np.empty(k), np.empty((k, 3))
-    for i in range(k):
-        out = off.copy()
-        out[i] = True
-        directions = np.vstack([TRIED, fit.unknowns.directions[row]])
-        tried = len(directions)
-        sigma = np.tile(np.where(out, np.inf, fit.sigma[row]), (tried, 1))
-        rows = ModelRows(
-            np.tile(block.rows.y[row], (tried, 1)),
-            sigma,
-            np.tile(block.rows.directions[row], (tried, 1)),
-            np.full(tried, block.rows.prior[row]),
-            block.rows.nominal_axes,
-        )
-        unknowns = replace(fit.unknowns, directions=directions)
-        for _ in range(TURNED):
-            turns = linearise(rows, unknowns).alone
-            length = np.abs(turns).max(axis=1, keepdims=True)
-            unknowns = unknowns.stepped(np.zeros(5 * k), turns * np.minimum(1.0, 0.5 / np.maximum(length, 0.5)))
-        squares = (((rows.y - predicted(unknowns)) / sigma) ** 2).sum(axis=1)
-        best = int(np.argmin(squares))
-        square[i], value[i], direction[i] = squares[best], predicted(unknowns)[best, i], unknowns.directions[best]
-    return Rivals(square, value, direction)
+def without_each(block: Block, fit: BlockFit, row: int, off: Array, spread: float = 1.0) -> WithoutEach:
+    """Of a row, its orientation looked for from everywhere, and of two as good (of three readings, mirrored ones) the one
+    nearer what was read; ``off`` (k,) bool: readings that take no part anyway;
+    ``spread``: times the fit's sigma."""
+    k, tried = block.rows.y.shape[1], len(TRIED) + 1
+    out = np.repeat(np.vstack([np.eye(k, dtype=bool), np.zeros(k, dtype=bool)]) | off, tried, axis=0)
+    n = len(out)
+    rows = ModelRows(
+        np.broadcast_to(block.rows.y[row], (n, k)),
+        np.where(out, np.inf, spread * fit.sigma[row]),
+        np.broadcast_to(block.rows.directions[row], (n, 3)),
+        np.full(n, block.rows.prior[row]),
+        block.rows.nominal_axes,
+    )
+    unknowns = replace(fit.unknowns, directions=np.tile(np.vstack([TRIED, fit.unknowns.directions[row]]), (k + 1, 1)))
+    unknowns = turned(rows, unknowns)
+    there = predicted(unknowns)
+    square = (((rows.y - there) / rows.sigma) ** 2).sum(axis=1).reshape(k + 1, tried)
+    least = square.min(axis=1)
+    away = np.abs(there - block.rows.y[row]).reshape(k + 1, tried, k).max(axis=2)
+    as_good = square <= least[:, None] + ODDS
+    best = np.argmin(np.where(as_good, away, np.inf), axis=1) + tried * np.arange(k + 1)
+    return WithoutEach(least[:k], float(least[k]), there[best[:k], np.arange(k)], unknowns.directions[best])
 
 
 @dataclass(frozen=True, eq=False)
@@ -235,33 +315,32 @@ def accelerometers_predicted(session: CalibrationSession, left_out: Array) -> Fo
         return None
     block = Block.of(session, felt)
     out = left_out[:, felt] & (left_out[:, felt].mean(axis=0) <= LEFT_OUT)
-    if not out.any() and not stands_out_of(block.rows):
+    if not out.any() and not stands_out_of(block):
         return None
     fit = fit_robustly(block, out)
     return None if fit is None else identified(session, block, fit, felt)
 
 
-def stands_out_of(rows: ModelRows) -> bool:
-    """Whether a reading stands out of what the sensors must have in common, by linear fits alone: their parity, by the
-    nominal axes and by the readings' own subspace, and the ellipsoid they lie on."""
-    R, k = rows.y.shape
-    centred = rows.y - np.median(rows.y, axis=0)
+def stands_out_of(block: Block) -> bool:
+    """Whether a reading stands out of what the sensors must have in common, by linear fits alone: the readings in the
+    null space of the nominal axes follow the vector that they measure, and that lies on an ellipsoid."""
+    rows, (R, k) = block.rows, block.rows.y.shape
     inward = np.linalg.pinv(rows.nominal_axes)
-    points = centred @ inward.T
+    points = (rows.y - np.median(rows.y, axis=0)) @ inward.T
     x, y, z = points.T
-    quadric = live(np.column_stack([x * x - y * y, y * y - z * z, x * y, x * z, y * z, points, np.ones(R)]))
-    checks = list[Array]()
-    if R - quadric.shape[1] >= FREEDOM:
-        leverage = (quadric**2).sum(axis=1, keepdims=True)
-        square = (points**2).sum(axis=1, keepdims=True)
-        checks.append((square - quadric @ (quadric.T @ square)) / np.sqrt(np.maximum(1.0 - leverage, TAKEN)))
-    if k > 3:
-        own = np.linalg.svd(centred - centred.mean(axis=0), full_matrices=False)[2][:3].T
-        for within in (rows.nominal_axes @ inward, own @ own.T):
-            parity = np.eye(k) - within
-            seen = np.diagonal(parity) > SEEN
-            checks.append((centred @ parity)[:, seen] / np.sqrt(np.diagonal(parity)[seen]))
-    return any(bool((np.abs(c).max(axis=0) > SUSPICIOUS * np.median(np.abs(c), axis=0) / HALF).any()) for c in checks)
+    along = np.column_stack([np.ones(R), points])
+    square = (points**2).sum(axis=1)
+    quadric = live(np.column_stack([along, x * x - y * y, y * y - z * z, x * y, x * z, y * z]))
+    noise = np.median(rows.sigma) if block.stated else np.nan
+    of_square = np.full((R, 1), 2 * noise * np.linalg.norm(inward) / np.sqrt(3))
+    if np.sqrt(square.max()) > SUSPICIOUS * np.sqrt(np.median(square)):
+        return True
+    if sticks_out(quadric, square[:, None], of_square).any():
+        return True
+    parity = np.eye(k) - rows.nominal_axes @ inward
+    seen = np.diagonal(parity) > SEEN
+    of_parity = np.broadcast_to(noise * np.sqrt(np.diagonal(parity)[seen]), (R, int(seen.sum())))
+    return k > 3 and bool(sticks_out(live(along), rows.y @ parity[:, seen], of_parity).any())
 
 
 def identified(session: CalibrationSession, block: Block, fit: BlockFit, felt: Array) -> Found:
@@ -270,7 +349,7 @@ def identified(session: CalibrationSession, block: Block, fit: BlockFit, felt: A
     directions = fit.unknowns.directions.copy()
     far = np.nan_to_num(np.abs(fit.predicted.t)) > GROSS
     for j in np.flatnonzero(far.sum(axis=1) == 1).tolist():
-        tried = rivals(block, fit, j, ~fit.agrees[j] & ~far[j])
+        tried = without_each(block, fit, j, ~fit.agrees[j] & ~far[j])
         likely = np.flatnonzero(tried.square <= tried.square.min() + ODDS)
         likely = likely[np.argsort(tried.square[likely])]
         if len(likely) > 1:
@@ -292,7 +371,7 @@ def self_evident(session: CalibrationSession, place: Array, j: int, likely: Arra
     predicted = Predicted(*(np.full(u.shape, np.nan) for _ in range(3)))
     predicted.value[j, place] = value
     predicted.sigma[j, place] = SLACK * np.abs(u[j, place] - value)
-    plain = [i for i in likely if slip_of(session, predicted, j, int(place[i])) in PLAIN]
+    plain = [i for i in likely if slip_of(session, predicted, j, int(place[i])) in PLAIN - {SIGN}]
     return np.array(plain) if len(plain) == 1 else likely
 
 

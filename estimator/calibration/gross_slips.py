@@ -29,15 +29,18 @@ CLOSE = 0.02
 that have no other name."""
 
 
+def same(readings: Array) -> Array:
+    """(..., R − 1, m) bool: readings (..., R, m) that are those of the row before."""
+    return np.asarray(np.abs(np.diff(readings, axis=-2)) <= SAME * np.abs(readings[..., 1:, :]))
+
+
 def stuck(readings: Array) -> Array:
-    """(R, m) bool: readings (R, m) that several rows in a row share."""
-    same = np.isclose(np.diff(readings, axis=0), 0.0, atol=0.0) | (
-        np.abs(np.diff(readings, axis=0)) <= SAME * np.abs(readings[1:])
-    )
-    edge = np.zeros((1, readings.shape[1]), dtype=bool)
-    after, before = np.vstack([same, edge]), np.vstack([edge, same])
+    """(..., R, m) bool: readings (..., R, m) that several rows in a row share."""
+    equal, edge = same(readings), np.zeros((*readings.shape[:-2], 1, readings.shape[-1]), dtype=bool)
+    after, before = np.concatenate([equal, edge], axis=-2), np.concatenate([edge, equal], axis=-2)
     centre = after & before
-    return np.asarray(centre | np.vstack([centre[1:], edge]) | np.vstack([edge, centre[:-1]]))
+    left, right = np.concatenate([centre[..., 1:, :], edge], axis=-2), np.concatenate([edge, centre[..., :-1, :]], axis=-2)
+    return np.asarray(centre | left | right)
 
 
 def slip_of(session: CalibrationSession, predicted: Predicted, j: int, i: int) -> str:

@@ -22,7 +22,7 @@ from estimator.diagnosis.explanation.record_findings import (
     wrong_record,
 )
 from estimator.diagnosis.explanation.temperature import temperatures, with_temperature
-from estimator.diagnosis.record.clipping import Clip, earlier_baseline, unclipped, weightless
+from estimator.diagnosis.record.clipping import Clip, earlier_baseline, unclipped
 from estimator.diagnosis.record.implausible import ImplausibleAxes, implausible_axes
 from estimator.diagnosis.record.nominal import wrong_entry
 from estimator.diagnosis.record.record_error import RecordError
@@ -86,7 +86,7 @@ def put_right(
     """The session and its history fitted, the session's record corrected first."""
     rows = averaged(session)
     refuse_silent(rows)
-    clips, whole = unclipped(weightless(rows), catalogue)
+    clips, whole = unclipped(rows, catalogue)
     earlier = tuple(earlier_baseline(switched_on_like(h, session), tuple(catalogue)) for h in history)
     errors, right = undo_record_errors(baseline_of(whole), earlier, catalogue)
     return PutRight(rows, tuple(clips), tuple(errors), right, earlier)

@@ -24,7 +24,7 @@ from estimator.diagnosis.record.expected import (
     who_may_misfit,
 )
 from estimator.diagnosis.residuals.baseline import Baseline
-from estimator.diagnosis.residuals.fitted import baseline_of
+from estimator.diagnosis.residuals.fitted import FREE, baseline_of
 from estimator.session import ACCELEROMETER, TWO_AXIS_STAND, Array, CalibrationSession
 
 FEWEST = 2
@@ -37,9 +37,6 @@ the noise of a sample, which a rest of a thousand samples hardly shows."""
 LEVEL = 1e-6
 """p-value below which a sensor is clipped, shared among sensors and sides: its readings are left out, which must not
 happen by chance once in the life of a fleet."""
-
-FREE = 1e3
-"""Standard error given to a clipped reading, in ranges of the sensor's readings: it takes no part any more."""
 
 UPPER, LOWER = 1.0, -1.0
 """Sides of the range."""
@@ -81,14 +78,6 @@ class Clip:
         errors[at] = np.where(known, FREE * np.ptp(readings[:, self.sensor]), errors[at])
         readings[at] = self.expected
         return replace(session, readings=readings, standard_errors=errors)
-
-
-def weightless(session: CalibrationSession) -> CalibrationSession:
-    """The session with the readings that were set aside left without weight, yet with a finite standard error: what is
-    weighed by it stays finite."""
-    free = np.broadcast_to(FREE * np.ptp(session.readings, axis=0), session.readings.shape)
-    errors = np.where(np.isinf(session.standard_errors), free, session.standard_errors)
-    return replace(session, standard_errors=errors) if session.set_aside else session
 
 
 def unclipped(session: CalibrationSession, catalogue: Sequence[Cause]) -> tuple[list[Clip], CalibrationSession]:
@@ -169,4 +158,4 @@ def earlier_baseline(session: CalibrationSession, catalogue: tuple[Cause, ...]) 
     ------
     ScheduleError : the session cannot be calibrated at all.
     """
-    return baseline_of(unclipped(weightless(averaged(session)), catalogue)[1])
+    return baseline_of(unclipped(averaged(session), catalogue)[1])
