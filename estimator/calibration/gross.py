@@ -33,6 +33,8 @@ else:
 def without_gross(sessions: Sequence[CalibrationSession]) -> list[CalibrationSession]:
     """Averaged sessions of one programme and schedule, each with its gross readings set aside."""
     first = sessions[0]
+    if all(session.set_aside for session in sessions):
+        return list(sessions)
     if first.programme != TWO_AXIS_STAND:
         return [session if session.set_aside else in_orientations(session) for session in sessions]
     basis = harmonics(first)
@@ -106,7 +108,7 @@ def named(session: CalibrationSession, choice: Choice) -> tuple[SetAside, ...]:
     found, done = list[SetAside](), np.zeros(u.shape, dtype=bool)
     for j, i in np.argwhere(choice.at):
         suspects = choice.suspects.get(int(j), ())
-        if done[j, i] or (suspects and int(i) != suspects[0]):
+        if (int(j), int(i)) not in choice.slips or done[j, i] or (suspects and int(i) != suspects[0]):
             continue
         last = int(j)
         while last + 1 < len(u) and choice.at[last + 1, i] and u[last + 1, i] == u[j, i] and not suspects:

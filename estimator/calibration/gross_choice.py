@@ -5,8 +5,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from estimator.applied_vector import stand_geometry
 from estimator.calibration.gross_linear import Predicted
-from estimator.calibration.gross_slips import PLAIN, same, slip_of, stuck
+from estimator.calibration.gross_slips import BEFORE, PLAIN, STUCK, same, slip_of, stuck
+from estimator.forward import response
+from estimator.parameters import nominal
 from estimator.session import ACCELEROMETER, TWO_AXIS_STAND, Array, CalibrationSession
 
 GROSS = 12.0
@@ -23,6 +26,16 @@ MOST, SOME = 0.1, 3
 """Part and number of a sensor's readings that may be gross without a plain slip: beyond both the sensor or the model is
 at fault."""
 
+HALF_DEAD = 0.5
+"""Part of the rows that one reading fills from which what is left may not say what should have been read."""
+
+LEAST_CHANGE = 0.05
+"""Part of gravity (of the Earth's rate) by which the input along the nominal axis must change over the rows for a
+constant reading to tell of a dead channel: 3°, more than axes are mounted off."""
+
+LEAST_COUNTS = 2.0
+"""Counts by which a reading in whole counts must be expected to change: fewer may round to the same."""
+
 CUT = 0.05
 """Part of a row's samples at an end of the channel's range from which its mean is a clipped one."""
 
@@ -32,10 +45,10 @@ class Choice:
     """What of a session is set aside. R rows, m sensors."""
 
     at: Array
-    """(R, m) bool."""
+    """(R, m) bool: what takes no part; all of a channel that is dead."""
     predicted: Predicted
     slips: Mapping[tuple[int, int], str]
-    """By row and sensor."""
+    """By row and sensor, of what is wrong."""
     suspects: Mapping[int, tuple[int, ...]] = field(default_factory=dict)
     """By row that cannot tell which of its readings is wrong: sensors, the likeliest first; all the row is out."""
 
@@ -57,6 +70,13 @@ def chosen(
     far &= plain | ~(shown_by_rows(session, predicted) | lasting(session, far, predicted))
     few = (far & ~plain).sum(axis=0) <= np.maximum(SOME, MOST * len(far))
     at = far & (plain | few)
+    twice = repeated(session, far)
+    at[twice] = True
+    slips.update(((int(j), i), BEFORE) for j in np.flatnonzero(twice) for i in range(at.shape[1]))
+    if session.programme == TWO_AXIS_STAND:
+        silent = dead(session) & np.isnan(predicted.value)
+        at |= silent.any(axis=0)
+        slips.update(((int(j), int(i)), STUCK) for j, i in np.argwhere(silent))
     doubtful = {j: who for j, who in (suspects or {}).items() if at[j, list(who)].any()}
     felt = np.array([s.kind == ACCELEROMETER for s in session.sensors])
     for j, who in doubtful.items():
@@ -75,16 +95,51 @@ def apart(size: Array) -> Array:
     return np.asarray(size >= least)
 
 
+def dead(session: CalibrationSession) -> Array:
+    """(R, m) bool: stretches of one reading over at least half of the rows of a stand, where by the nominal axis the
+    input changes: what is left does not say what the channel should have read.
+
+    Along the axis that a stand turns about, in one run, a sensor that is alive reads the same too.
+    """
+    found = np.zeros(session.readings.shape, dtype=bool)
+    equal = stuck(session.readings)
+    for i in np.flatnonzero(equal.mean(axis=0) >= HALF_DEAD).tolist():
+        geometry, like = stand_geometry(session), nominal(session.sensors)
+        expected, least = response(like, geometry.n)[:, i], LEAST_CHANGE * abs(like.scale[i]) * geometry.norm[i]
+        u, time = session.readings[:, i], session.count_time or 1.0
+        if np.all(u == np.round(u)):
+            least = max(least, LEAST_COUNTS / time)
+        for first, stop in stretches(session.readings, equal, i):
+            if stop - first >= HALF_DEAD * len(u):
+                found[first:stop, i] = np.ptp(expected[first:stop]) > least
+    return found
+
+
+def stretches(readings: Array, equal: Array, i: int) -> list[tuple[int, int]]:
+    """First row and one past the last of every stretch of sensor i that the same reading fills; ``equal`` (R, m) bool as
+    of `stuck` readings (R, m)."""
+    changes = (equal[1:, i] != equal[:-1, i]) | ~same(readings)[:, i]
+    edges = np.flatnonzero(np.r_[True, changes, True]).tolist()
+    return [(a, b) for a, b in zip(edges[:-1], edges[1:], strict=True) if equal[a, i]]
+
+
+def repeated(session: CalibrationSession, far: Array) -> Array:
+    """(R,) bool: rows that repeat the row before in every channel, although some of them are ``far`` (R, m) bool from
+    what they should be: the block was not turned, or the row was written twice."""
+    if session.programme != TWO_AXIS_STAND:
+        return np.zeros(len(far), dtype=bool)
+    return np.r_[False, same(session.readings).all(axis=1)] & far.any(axis=1)
+
+
 def standing_still(session: CalibrationSession, predicted: Predicted) -> Array:
     """(R, m) bool: stretches of one reading in which it should have changed, without the row that it stayed at."""
     u, equal = session.readings, stuck(session.readings)
     found = np.zeros(u.shape, dtype=bool)
     for i in np.flatnonzero(equal.any(axis=0)).tolist():
         t, value, sigma = predicted.t[:, i], predicted.value[:, i], predicted.sigma[:, i]
-        edges = np.flatnonzero(np.r_[True, equal[1:, i] != equal[:-1, i], True] | np.r_[True, ~same(u)[:, i], True])
-        for first, stop in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True):
+        for first, stop in stretches(u, equal, i):
             moves = np.ptp(value[first:stop]) > GROSS * np.max(sigma[first:stop])
-            if equal[first, i] and moves and np.max(np.abs(t[first:stop])) > GROSS:
+            if moves and np.max(np.abs(t[first:stop])) > GROSS:
                 found[first + int(abs(t[first]) <= BESIDE) : stop, i] = True
     return found
 

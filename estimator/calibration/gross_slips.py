@@ -1,9 +1,12 @@
 """Which slip makes a grossly wrong reading: by what it reads and by what it should."""
 
+from collections.abc import Sequence
+from itertools import groupby
+
 import numpy as np
 
 from estimator.calibration.gross_linear import AGREES, Predicted
-from estimator.message import say
+from estimator.message import joined, say
 from estimator.session import Array, CalibrationSession, SetAside
 
 ZERO, SIGN, DECIMAL, NEIGHBOUR = "zero", "sign", "decimal-point", "neighbour-column"
@@ -87,6 +90,25 @@ LIKELY = {
 """By slip, in words."""
 
 
+def sentences(found: Sequence[SetAside]) -> tuple[str, ...]:
+    """What was set aside, in words; a row that repeats the one before in several channels is one thing."""
+    said = list[str]()
+    for row, group in groupby(found, key=lambda aside: (aside.row, aside.slip == BEFORE)):
+        together = list(group)
+        if row[1] and len(together) > 1:
+            said.append(
+                say(
+                    "Row {row} repeats the row before in {sensors}; these readings were left out. Was the block turned? "
+                    "If the right readings are known, correct the file and upload it again.",
+                    row=row[0],
+                    sensors=joined(", ", (aside.sensor for aside in together)),
+                )
+            )
+        else:
+            said += map(in_words, together)
+    return tuple(said)
+
+
 def in_words(aside: SetAside) -> str:
     """What was set aside, and what to do about it."""
     slip = LIKELY.get(aside.slip)
@@ -100,7 +122,7 @@ def in_words(aside: SetAside) -> str:
         "likely": likely,
     }
     if aside.suspects:
-        who = ", ".join(aside.suspects)
+        who = joined(", ", aside.suspects)
         return say(
             "Row {row} does not fit: one of {who} is wrong by much and its row cannot tell which; the row was left "
             "out. Correct the file and upload it again if you know.",

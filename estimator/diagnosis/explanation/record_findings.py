@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from estimator.calibration.gross_slips import in_words
+from estimator.calibration.gross_slips import sentences
 from estimator.causes.sensor import ReadingOutlier
-from estimator.diagnosis.explanation.naming import merged, named_cause
+from estimator.diagnosis.explanation.naming import listed, merged, named_cause
 from estimator.diagnosis.explanation.rivals import CREDIBLE, SHOWN
 from estimator.diagnosis.record.clipping import Clip
 from estimator.diagnosis.record.implausible import ImplausibleAxes
@@ -17,7 +17,7 @@ from estimator.diagnosis.record.turned import LEAST
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.results import Finding, Rival, Structure
 from estimator.forward import measured
-from estimator.message import joined, say
+from estimator.message import capitalised, joined, say
 from estimator.results import Calibration
 from estimator.session import ACCELEROMETER, CalibrationSession, SetAside
 
@@ -30,7 +30,11 @@ def gross_findings(readings: Sequence[SetAside], session: CalibrationSession) ->
     if not known:
         return ()
     found = merged([(OUTLIER, gross_finding(r, session)) for r in known])
-    return tuple(replace(f, advice=joined(" ", map(in_words, known))) for f in found)
+    advice = joined(" ", sentences(known))
+    if all(r.last_row > r.row for r in known):
+        stood = say("{sensors} stood still for several rows.", sensors=listed(found[0].sensors))
+        return (replace(found[0], sentence=capitalised(stood), advice=advice),)
+    return tuple(replace(f, advice=advice) for f in found)
 
 
 def gross_finding(reading: SetAside, session: CalibrationSession) -> Finding:
@@ -142,5 +146,14 @@ def wrong_record(axes: ImplausibleAxes | None, session: CalibrationSession) -> t
     names = tuple(session.sensors[i].name for i in axes.sensors)
     who = "input axes" if names else "the whole block"
     parts = {"who": who, "angle": f"{np.degrees(axes.angle):.0f}"}
+    if axes.step is not None:
+        where = say(
+            "a zero that differs by {step} {unit} between the direct and the flipped run, or an input axis {angle}° wrong: "
+            "the two do the same to these readings; repeat both runs without switching off between them",
+            step=f"{axes.step:.3g}",
+            unit="m/s²" if session.sensors[axes.sensors[0]].kind == ACCELEROMETER else "rad/s",
+            angle=f"{np.degrees(axes.angle):.0f}",
+        )
+        return (Structure(where, names, 0.0, axes.angle / float(np.sqrt(LEAST))),)
     where = say("{who} {angle}° wrong: columns, runs or angles of the record are mixed up", **parts)
     return (Structure(where, names, 0.0, axes.angle / float(np.sqrt(LEAST)), of_record=True),)

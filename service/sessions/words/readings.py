@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from math import isfinite, sqrt
 
+from estimator.calibration.gross_slips import sentences
 from estimator.message import joined, say, say_count
 from estimator.moments import duration
 from estimator.results import Calibration, Fit, KnownCombination
@@ -32,7 +33,8 @@ def fit_in_words(calibration: Calibration) -> FitWords:
     """What χ² and its probability say, and what to be careful of."""
     fit = calibration.fit
     headline = too_few(calibration) or _headline(fit)
-    return FitWords(headline, _detail(fit), (*_warnings(fit), *_open(calibration)))
+    left_out = sentences(calibration.set_aside)
+    return FitWords(headline, _detail(fit), (*left_out, *_warnings(fit), *_open(calibration)))
 
 
 def bands_in_words(calibration: Calibration, times: float | None) -> str:
