@@ -39,7 +39,15 @@ def calibrate(session: CalibrationSession, *, quadratic: bool | None = None) -> 
 
 
 def averaged(session: CalibrationSession, programmes: tuple[str, ...] = CALIBRATIONS) -> CalibrationSession:
-    """The session with one row a position, gross readings set aside; ScheduleError where its programme is none of those that calibrate."""
+    """The session with one row a position, gross readings set aside; ScheduleError as `as_it_came`."""
+    [rows] = without_gross([as_it_came(session, programmes)])
+    if session.programme != TWO_AXIS_STAND:
+        require_whole_range(rows)
+    return rows
+
+
+def as_it_came(session: CalibrationSession, programmes: tuple[str, ...] = CALIBRATIONS) -> CalibrationSession:
+    """The session with one row a position; ScheduleError where its programme is none of those that calibrate."""
     if session.programme not in programmes:
         hint = "; compare it with a calibration: imu-health parity" if session.programme == IN_SERVICE else ""
         raise ScheduleError(
@@ -49,8 +57,4 @@ def averaged(session: CalibrationSession, programmes: tuple[str, ...] = CALIBRAT
                 )
             ]
         )
-    rows = average(session, residual_per_freedom, tilt_response) if session.is_raw else session
-    [rows] = without_gross([rows])
-    if session.programme != TWO_AXIS_STAND:
-        require_whole_range(rows)
-    return rows
+    return average(session, residual_per_freedom, tilt_response) if session.is_raw else session

@@ -17,7 +17,7 @@ import numpy as np
 
 from estimator.applied_vector import EARTH_RATE, STANDARD_GRAVITY
 from estimator.calibration.gross_choice import Choice, chosen
-from estimator.calibration.gross_linear import Predicted, harmonics, live, nothing_predicted, regression, sticks_out
+from estimator.calibration.gross_linear import harmonics, live, nothing_predicted, regression, sticks_out
 from estimator.calibration.gross_slips import stuck
 from estimator.on_demand import function_on_demand
 from estimator.session import ACCELEROMETER, TWO_AXIS_STAND, Array, CalibrationSession, SetAside
@@ -39,7 +39,9 @@ def without_gross(sessions: Sequence[CalibrationSession]) -> list[CalibrationSes
         return [session if session.set_aside else in_orientations(session) for session in sessions]
     basis = harmonics(first)
     readings = np.stack([session.readings for session in sessions])
-    suspicious = sticks_out(basis, readings, np.stack([stated(session) for session in sessions])) | stuck(readings).any(axis=-2)
+    suspicious = sticks_out(basis, readings, np.stack([stated(session) for session in sessions])) | stuck(readings).any(
+        axis=-2
+    )
     return [
         on_stand(session, basis) if doubt and not session.set_aside else session
         for session, doubt in zip(sessions, suspicious.any(axis=-1), strict=True)

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 
@@ -17,7 +18,7 @@ GROSS = 12.0
 smaller is weighed against other causes."""
 
 APART = 3.0
-"""Factor by which it must lie beyond the largest deviation that is left: heavy tails and smooth effects leave no gap."""
+"""Factor by which it must lie beyond the largest deviation that is left: tails and smooth effects leave no gap."""
 
 BESIDE = 5.0
 """Standard errors by which another sensor shows a row too: chance does it once in a million readings."""
@@ -116,11 +117,11 @@ def dead(session: CalibrationSession) -> Array:
 
 
 def stretches(readings: Array, equal: Array, i: int) -> list[tuple[int, int]]:
-    """First row and one past the last of every stretch of sensor i that the same reading fills; ``equal`` (R, m) bool as
-    of `stuck` readings (R, m)."""
+    """First row and one past the last of every stretch of sensor i that one reading fills; ``equal`` (R, m) bool as of
+    `stuck` readings (R, m)."""
     changes = (equal[1:, i] != equal[:-1, i]) | ~same(readings)[:, i]
     edges = np.flatnonzero(np.r_[True, changes, True]).tolist()
-    return [(a, b) for a, b in zip(edges[:-1], edges[1:], strict=True) if equal[a, i]]
+    return [(a, b) for a, b in pairwise(edges) if equal[a, i]]
 
 
 def repeated(session: CalibrationSession, far: Array) -> Array:
@@ -182,6 +183,6 @@ def lasting(session: CalibrationSession, far: Array, predicted: Predicted) -> Ar
     for i in range(m):
         steps = np.abs(np.diff(np.log(np.abs(np.where(far[:, i], predicted.t[:, i], 1.0)))))
         edges = np.flatnonzero(ends | np.r_[True, (np.diff(side[:, i]) != 0) | (steps > np.log(APART)), True])
-        for first, stop in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True):
+        for first, stop in pairwise(edges.tolist()):
             found[first:stop, i] = side[first, i] != 0 and stop - first > 1 and bool(ends[first] or ends[stop])
     return found

@@ -147,9 +147,8 @@ def of_one(basis: Array, y: Array, stated: Array, free: Array) -> tuple[Array, A
 
 
 def deletion(design: Array, z: Array, agrees: Array, floor: float) -> tuple[Array, Array] | None:
-    """(R,) prediction of each of z (R,) by the agreeing readings without it, and one sigma of the difference; None where
-    they do not determine it. ``floor``: least one sigma of a reading."""
-    basis, _, _ = np.linalg.svd(design[agrees], full_matrices=False)
+    """(R,) prediction of each of z (R,) by the agreeing readings without it, and one sigma of the difference; None
+    where they do not determine it. ``floor``: least one sigma of a reading."""
     freedom = int(agrees.sum()) - design.shape[1]
     if freedom < FREEDOM:
         return None

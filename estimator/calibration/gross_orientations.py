@@ -23,7 +23,6 @@ from estimator.calibration.gross_choice import GROSS
 from estimator.calibration.gross_linear import (
     AGREES,
     FREEDOM,
-    HALF,
     ROUNDS,
     SUSPICIOUS,
     TAKEN,
@@ -67,7 +66,7 @@ SEEN = 0.01
 """Share of a reading that parity must show to be judged by it: a tenth of its size."""
 
 LEFT_OUT = 0.5
-"""Part of a channel's readings that may be left out to begin with: equal ones beyond it are coarse steps, not a fault."""
+"""Part of a channel's readings that may be left out to begin with: beyond it equal ones are coarse steps, no fault."""
 
 SLACK = 1e-3
 """Part of a slip's size that the norm of gravity leaves open in a row of three."""
@@ -169,9 +168,9 @@ def row_squares(rows: ModelRows, unknowns: Unknowns) -> Array:
 
 
 def row_by_row(block: Block, fit: BlockFit, left_out: Array) -> tuple[Unknowns, Array]:
-    """The fit's unknowns with every row's own orientation, and (R, k) bool the readings that agree in it: a row that does
-    not fit together loses one reading after the other, as long as two are left."""
-    R, k = block.rows.y.shape
+    """The fit's unknowns with every row's own orientation, and (R, k) bool the readings that agree in it: a row that
+    does not fit together loses one reading after the other, as long as two are left."""
+    k = block.rows.y.shape[1]
     agrees, noise = ~left_out, np.where(left_out, np.inf, SPREAD * fit.sigma)
     placed = turned(block.rows.weighted(noise), fit.unknowns)
     square = (((block.rows.y - predicted(placed)) / noise) ** 2).sum(axis=1)
@@ -199,19 +198,6 @@ def refitted(block: Block, unknowns: Unknowns, agrees: Array, quadratic: bool) -
         t = (rows.y - value) / sigma * np.sign(block.unit)
     there = Predicted(value * block.unit, sigma * np.abs(block.unit), t)
     return BlockFit(there, solution.unknowns, agrees, scale * rows.sigma, quadratic)
-
-
-def begun(rows: ModelRows, free: Array, quadratic: bool, taken: float) -> tuple[Array, Unknowns]:
-    """(R, k) bool: readings that agree after Cauchy's weights, and the fit there. ``taken``: part of the readings'
-    freedom that the fit takes."""
-    weight = np.where(free, 1.0, 0.0)
-    unknowns = start(rows.weighted(with_weight(rows, weight)))
-    for _ in range(REWEIGHTED):
-        unknowns = search(rows.weighted(with_weight(rows, weight)), unknowns, quadratic).unknowns
-        size = np.abs(rows.y - predicted(unknowns)) / rows.sigma
-        middle = max(float(np.quantile(size[free], 0.5 + taken / 2)) / HALF, LEAST)
-        weight = np.where(free, 1.0 / (1.0 + (size / (CAUCHY * middle)) ** 2), 0.0)
-    return free & (size <= AGREES * middle), unknowns
 
 
 def held_against(rows: ModelRows, solution: Solution, agrees: Array, floor: Array) -> tuple[Array, Array, Array]:
@@ -266,9 +252,8 @@ class WithoutEach:
 
 
 def without_each(block: Block, fit: BlockFit, row: int, off: Array, spread: float = 1.0) -> WithoutEach:
-    """Of a row, its orientation looked for from everywhere, and of two as good (of three readings, mirrored ones) the one
-    nearer what was read; ``off`` (k,) bool: readings that take no part anyway;
-    ``spread``: times the fit's sigma."""
+    """Of a row, its orientation looked for from everywhere, and of two as good (of three readings, mirrored ones) the
+    one nearer what was read; ``off`` (k,) bool: readings that take no part anyway; ``spread``: times the fit's sigma."""
     k, tried = block.rows.y.shape[1], len(TRIED) + 1
     out = np.repeat(np.vstack([np.eye(k, dtype=bool), np.zeros(k, dtype=bool)]) | off, tried, axis=0)
     n = len(out)

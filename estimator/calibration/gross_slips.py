@@ -42,7 +42,10 @@ def stuck(readings: Array) -> Array:
     equal, edge = same(readings), np.zeros((*readings.shape[:-2], 1, readings.shape[-1]), dtype=bool)
     after, before = np.concatenate([equal, edge], axis=-2), np.concatenate([edge, equal], axis=-2)
     centre = after & before
-    left, right = np.concatenate([centre[..., 1:, :], edge], axis=-2), np.concatenate([edge, centre[..., :-1, :]], axis=-2)
+    left, right = (
+        np.concatenate([centre[..., 1:, :], edge], axis=-2),
+        np.concatenate([edge, centre[..., :-1, :]], axis=-2),
+    )
     return np.asarray(centre | left | right)
 
 
@@ -98,8 +101,8 @@ def sentences(found: Sequence[SetAside]) -> tuple[str, ...]:
         if row[1] and len(together) > 1:
             said.append(
                 say(
-                    "Row {row} repeats the row before in {sensors}; these readings were left out. Was the block turned? "
-                    "If the right readings are known, correct the file and upload it again.",
+                    "Row {row} repeats the row before in {sensors}; these readings were left out. Was the block "
+                    "turned? If the right readings are known, correct the file and upload it again.",
                     row=row[0],
                     sensors=joined(", ", (aside.sensor for aside in together)),
                 )

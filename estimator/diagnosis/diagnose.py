@@ -6,7 +6,7 @@ record → residuals → signatures → selection → explanation
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from estimator.calibration.calibrate import averaged, calibrate
+from estimator.calibration.calibrate import as_it_came, averaged, calibrate
 from estimator.causes.catalogue import CATALOGUE
 from estimator.causes.contract import Cause
 from estimator.diagnosis.explanation.detection_limits import limits
@@ -76,6 +76,8 @@ class PutRight:
     errors: tuple[RecordError, ...]
     """What of the record was corrected."""
     right: Baseline
+    came: Baseline | None
+    """The session as it came, fitted; None where nothing was corrected or set aside."""
     earlier: tuple[Baseline, ...]
     """Of the history, oldest first, without clipped readings."""
 
@@ -89,7 +91,8 @@ def put_right(
     clips, whole = unclipped(rows, catalogue)
     earlier = tuple(earlier_baseline(switched_on_like(h, session), tuple(catalogue)) for h in history)
     errors, right = undo_record_errors(baseline_of(whole), earlier, catalogue)
-    return PutRight(rows, tuple(clips), tuple(errors), right, earlier)
+    came = baseline_of(as_it_came(session)) if clips or errors or rows.set_aside else None
+    return PutRight(rows, tuple(clips), tuple(errors), right, came, earlier)
 
 
 def switched_on_like(earlier: CalibrationSession, session: CalibrationSession) -> CalibrationSession:
@@ -124,7 +127,7 @@ def diagnosed(session: PutRight, catalogue: Sequence[Cause]) -> Diagnosis:
             *with_temperature(findings(state, fitted, new), warmth),
         ),
         structures=(*wrong_record(wrong, right.session), *structures(state)),
-        gain=gain(state, baseline_of(rows) if session.clips or session.errors else None, fitted, new),
+        gain=gain(state, session.came, fitted, new),
         limits=limits(state),
         noise=noise_scales(state),
         baseline=calibrate(rows),

@@ -15,7 +15,7 @@ from estimator.applied_vector import STANDARD_GRAVITY
 from estimator.calibration.gross_slips import STUCK
 from estimator.message import joined, say
 from estimator.results import Calibration, SensorCalibration
-from estimator.session import CALIBRATIONS, Array, CalibrationSession, Sensor
+from estimator.session import CALIBRATIONS, Array, Sensor
 from service.ingest.checked import Checked
 from service.judging.beside_type import MOST, beside_type, type_of_references
 from service.judging.origin import of_date, of_moment, of_unit

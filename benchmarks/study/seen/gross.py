@@ -82,7 +82,11 @@ def outcome(case: Case, looks: bool) -> Outcome:
         return Outcome(case.identifiable, False, False, (), False, refused=True)
     wrong = {name for _, name in wanted}
     return Outcome(
-        case.identifiable, wanted <= places, bool(wanted) and bool(accused - wrong), inside(case, calibration), bool(places)
+        case.identifiable,
+        wanted <= places,
+        bool(wanted) and bool(accused - wrong),
+        inside(case, calibration),
+        bool(places),
     )
 
 

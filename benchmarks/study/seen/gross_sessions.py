@@ -63,9 +63,7 @@ def nominal_axes(m: int, rng: np.random.Generator) -> Array:
     if rng.random() < 0.5:
         turn = 2 * np.pi * np.arange(m) / m
         half = np.arccos(1 / np.sqrt(3))
-        return np.column_stack(
-            [np.sin(half) * np.cos(turn), np.full(m, np.cos(half)), np.sin(half) * np.sin(turn)]
-        )
+        return np.column_stack([np.sin(half) * np.cos(turn), np.full(m, np.cos(half)), np.sin(half) * np.sin(turn)])
     while True:
         axes = unit(rng.standard_normal((m, 3)))
         others = [np.linalg.svd(np.delete(axes, i, axis=0), compute_uv=False)[2] for i in range(m)]
@@ -93,9 +91,7 @@ def stand(rng: np.random.Generator) -> Truth:
     tilt_x, tilt_y, lift = arcsec * rng.standard_normal(3) * [1 / 3, 1 / 3, 1.0]
     rise = np.radians(alpha) + lift + tilt_x
     off = off - tilt_y / np.cos(rise)
-    n = np.column_stack(
-        [-np.cos(rise) * np.sin(off), np.full(len(off), np.sin(rise)), np.cos(rise) * np.cos(off)]
-    )
+    n = np.column_stack([-np.cos(rise) * np.sin(off), np.full(len(off), np.sin(rise)), np.cos(rise) * np.cos(off)])
     n = np.where(flip[:, None], n * [-1, -1, 1], n)
     size = EARTH if gyro else G
     scale_nominal, kind = (2000.0, "gyroscope") if gyro else (0.12, "accelerometer")

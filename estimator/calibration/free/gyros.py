@@ -15,7 +15,6 @@ from estimator.calibration.free.excess import UNLIKELY
 from estimator.session import Array
 from estimator.significance import p_value
 
-
 WEIGHTLESS = 100.0
 """One sigma, rad/s, from which a reading takes no part: no gyro at rest is as bad."""
 
@@ -54,8 +53,8 @@ def rest_biases(readings: Array, standard_errors: Array, repeatability: Array) -
     Parameters
     ----------
     readings : (R, k) rad/s by the nominal scale, nominal offset taken off.
-    standard_errors : (R, k) rad/s; NaN where not stated: then the scatter of the rows is taken; beyond `WEIGHTLESS` where a
-        reading takes no part.
+    standard_errors : (R, k) rad/s; NaN where not stated: then the scatter of the rows is taken; beyond
+        `WEIGHTLESS` where a reading takes no part.
     repeatability : (k,) rad/s.
     """
     out, known = standard_errors > WEIGHTLESS, ~np.isnan(standard_errors)

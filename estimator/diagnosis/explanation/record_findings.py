@@ -148,8 +148,8 @@ def wrong_record(axes: ImplausibleAxes | None, session: CalibrationSession) -> t
     parts = {"who": who, "angle": f"{np.degrees(axes.angle):.0f}"}
     if axes.step is not None:
         where = say(
-            "a zero that differs by {step} {unit} between the direct and the flipped run, or an input axis {angle}° wrong: "
-            "the two do the same to these readings; repeat both runs without switching off between them",
+            "a zero that differs by {step} {unit} between the direct and the flipped run, or an input axis {angle}° "
+            "wrong: the two do the same to these readings; repeat both runs without switching off between them",
             step=f"{axes.step:.3g}",
             unit="m/s²" if session.sensors[axes.sensors[0]].kind == ACCELEROMETER else "rad/s",
             angle=f"{np.degrees(axes.angle):.0f}",

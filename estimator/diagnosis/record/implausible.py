@@ -25,8 +25,8 @@ class ImplausibleAxes:
     angle: float
     """The largest, rad."""
     step: float | None = None
-    """By how much the zero of the one sensor changed from the direct to the flipped run, m/s² (rad/s), where that may as
-    well be what is wrong: on a stand it does the same to the readings."""
+    """By how much the zero of the one sensor changed from the direct to the flipped run, m/s² (rad/s), where that may
+    as well be what is wrong: on a stand it does the same to the readings."""
 
 
 def implausible_axes(baseline: Baseline, expected: Array) -> ImplausibleAxes | None:

@@ -1,4 +1,4 @@
-"""Channels that read the same in every row: they take no part in a calibration, and nothing can be diagnosed of them."""
+"""Channels that read the same in every row: they take no part in a calibration, and nothing is diagnosed of them."""
 
 import numpy as np
 

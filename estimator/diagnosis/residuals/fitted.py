@@ -30,7 +30,6 @@ from estimator.forward import input_of, measured, projected, slope
 from estimator.parameters import SensorParameters, together
 from estimator.session import ACCELEROMETER, GYROSCOPE, TWO_AXIS_STAND, Array, CalibrationSession
 
-
 FREE = 1e3
 """Standard error of a reading that takes no part, in ranges of the sensor's readings: as if it were not there."""
 
@@ -45,8 +44,8 @@ def baseline_of(session: CalibrationSession, start: SensorParameters | None = No
 
 
 def weightless(session: CalibrationSession) -> CalibrationSession:
-    """The session with readings that were set aside left without weight by a standard error that is finite, since causes
-    are weighed by it."""
+    """The session with readings that were set aside left without weight by a standard error that is finite, since
+    causes are weighed by it."""
     if not session.set_aside:
         return session
     free = np.broadcast_to(FREE * np.ptp(session.readings, axis=0), session.readings.shape)
