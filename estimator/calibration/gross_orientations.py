@@ -253,7 +253,7 @@ class WithoutEach:
 
 def without_each(block: Block, fit: BlockFit, row: int, off: Array, spread: float = 1.0) -> WithoutEach:
     """Of a row, its orientation looked for from everywhere, and of two as good (of three readings, mirrored ones) the
-    one nearer what was read; ``off`` (k,) bool: readings that take no part anyway; ``spread``: times the fit's sigma."""
+    one nearer what was read; ``off`` (k,) bool: readings that take no part anyway; ``spread``: times its sigma."""
     k, tried = block.rows.y.shape[1], len(TRIED) + 1
     out = np.repeat(np.vstack([np.eye(k, dtype=bool), np.zeros(k, dtype=bool)]) | off, tried, axis=0)
     n = len(out)
