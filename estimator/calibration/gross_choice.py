@@ -146,12 +146,14 @@ def standing_still(session: CalibrationSession, predicted: Predicted) -> Array:
 
 
 def clipped(session: CalibrationSession, predicted: Predicted) -> Array:
-    """(R, m) bool: readings at an end of their channel's range, several or by the raw log, expected beyond it."""
+    """(R, m) bool: readings at an end of their channel's range, expected beyond it: on a stand several at one of its
+    ends, in unknown orientations single ones too, which are as likely cut off as wrong."""
     u, beyond = session.readings, np.nan_to_num(predicted.value - session.readings)
-    found = np.zeros(u.shape, dtype=bool)
-    for k, (end, outward) in enumerate(((u.max(axis=0), beyond > 0), (u.min(axis=0), beyond < 0))):
-        stands = u == end
-        at_end = stands & (stands.sum(axis=0) > 1)
+    found, ends = np.zeros(u.shape, dtype=bool), (u == u.max(axis=0), u == u.min(axis=0))
+    enough = 2 if session.programme == TWO_AXIS_STAND else 1
+    often = np.maximum(*(stands.sum(axis=0) for stands in ends)) >= enough
+    for k, (stands, outward) in enumerate(zip(ends, (beyond > 0, beyond < 0), strict=True)):
+        at_end = stands & often
         if session.at_ends is not None:
             at_end |= session.at_ends[..., k] >= CUT
         short = np.nan_to_num(np.abs(predicted.t)) < BESIDE

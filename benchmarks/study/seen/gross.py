@@ -1,7 +1,7 @@
 """``python -m benchmarks.study.seen.gross --n 300 --seed 1`` prints how gross readings are found, as a table.
 
 A reading counts as named where its row and sensor stand in what the calibration set aside or among the diagnosis'
-findings; another sensor counts as accused by any finding, structure or reading set aside that names it. Of triads in
+findings, or, where it may as well be cut off, the alternative of one; another sensor counts as accused by any finding, structure or reading set aside that names it. Of triads in
 unknown orientations those are counted apart in which the physics leaves several readings that may be wrong: then what
 counts is that the row is named with the wrong sensor among the suspects.
 """
@@ -35,7 +35,7 @@ from estimator.results import Calibration
 KINDS: dict[str, Callable[[np.random.Generator], Case]] = {
     "stand, one reading": partial(single, draw=stand),
     "orientations, one reading": partial(single, draw=partial(orientations, triad=False)),
-    "triad in orientations, one reading": partial(single, draw=partial(orientations, triad=True)),
+    "triad, one reading": partial(single, draw=partial(orientations, triad=True)),
     "stand, three readings": partial(three, draw=stand),
     "orientations, three readings": partial(three, draw=orientations),
     "stand, a tenth of one sensor": partial(tenth, draw=stand),
@@ -73,6 +73,8 @@ def outcome(case: Case, looks: bool) -> Outcome:
             diagnosis = diagnose(session)
             calibration = diagnosis.calibration
             for finding in diagnosis.findings:
+                if "reading-outlier" in finding.alternatives:
+                    places |= {place for place in wanted if place[1] in finding.sensors}
                 accused |= set(finding.sensors) if finding.cause != "excess-noise" else set()
                 if finding.cause == "reading-outlier":
                     shapes = zip(finding.sensors, finding.nonlinear_each, strict=False)
