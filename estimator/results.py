@@ -12,7 +12,7 @@ from estimator.codec import DEGREES, RUN, Document, named
 from estimator.coverage import coverage_factor
 from estimator.curves import ThermalCurves
 from estimator.json_object import Json
-from estimator.session import Array, ScreenFinding, Site
+from estimator.session import Array, ScreenFinding, SetAside, Site
 
 ARCSEC = np.pi / 180 / 3600
 """rad."""
@@ -181,13 +181,13 @@ class Calibration(
     format="imu-calibration/1",
     order=(
         "unit", "method", "sensors", "fit", "gauge", "names", "units", "covariance", "repeatability", "residuals",
-        "site", "parity", "thermal", "screening",
+        "site", "parity", "thermal", "screening", "set_aside",
     ),
     keys={
         "names": "covariance.names", "units": "covariance.units",
         "covariance": "covariance.total", "repeatability": "covariance.repeatability",
     },
-    optional=("site", "parity", "thermal", "screening"),
+    optional=("site", "parity", "thermal", "screening", "set_aside"),
 ):  # fmt: skip
     """The calibration of one block: m sensors, P = 5 m parameters with their joint covariance."""
 
@@ -215,6 +215,8 @@ class Calibration(
     """Bias and scale factor over temperature, of a thermal programme; everything else is at its reference."""
     screening: tuple[ScreenFinding, ...] = ()
     """What was found in the raw rows that it was made of, before they were averaged."""
+    set_aside: tuple[SetAside, ...] = ()
+    """Gross readings that took no part."""
 
     def sensor(self, name: str) -> SensorCalibration:
         """The calibration of the sensor called ``name``; KeyError if there is none."""

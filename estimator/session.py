@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from estimator.codec import Document
+
 Array = NDArray[Any]
 """Of any number type; shapes and units stand where an array is declared."""
 
@@ -127,6 +129,36 @@ class Stand:
     sigma: StandErrors = field(default_factory=StandErrors)
 
 
+@dataclass(frozen=True)
+class SetAside(Document):
+    """A grossly wrong reading of a session, or a stretch of them, that takes no part in any fit."""
+
+    sensor: str
+    row: int
+    """Counted from 1, in the order measured."""
+    last_row: int
+    """The same, except of a stretch."""
+    reading: float
+    """As the file states it, reading units."""
+    expected: float
+    """By everything else in the session, reading units; of a stretch in its first row. NaN where nothing tells it."""
+    size: float
+    """Reading less expected, at the input: m/s² (rad/s)."""
+    sigma: float
+    """One sigma of the size, m/s² (rad/s)."""
+    slip: str
+    """The likely one: ``zero``, ``sign``, ``decimal-point``, ``neighbour-column``, ``row-before``, ``unplugged``,
+    ``stuck`` or ``unknown``."""
+    suspects: tuple[str, ...] = ()
+    """Where the row cannot tell which sensor is wrong: those that may be, ``sensor`` among them; the whole row then
+    takes no part."""
+
+    @property
+    def strength(self) -> float:
+        """Size in standard errors."""
+        return abs(self.size) / self.sigma
+
+
 @dataclass(frozen=True, eq=False)
 class CalibrationSession:
     """One calibration session of one block of one unit. R rows in the order measured, m sensors.
@@ -199,6 +231,8 @@ class CalibrationSession:
     """What was found in the raw rows before they were averaged; samples left out are NaN in ``readings``."""
     unscreened: tuple[str, ...] = ()
     """Kinds that the file declines to be screened for."""
+    set_aside: tuple[SetAside, ...] = ()
+    """Gross readings; in ``readings`` stands what was expected in their place, without weight; in no file."""
 
     @property
     def is_raw(self) -> bool:

@@ -10,6 +10,7 @@ from typing import overload
 import numpy as np
 
 from estimator.calibration.calibrate import calibrate
+from estimator.calibration.gross import without_gross
 from estimator.calibration.stand import calibrate_stand
 from estimator.calibration.stand_report import Reports
 from estimator.results import Calibration
@@ -79,6 +80,6 @@ def calibrate_many(sessions: Sequence[CalibrationSession]) -> CalibrationBatch:
     for members in groups.values():
         size = max(1, CHUNK_READINGS // sessions[members[0]].readings.size)
         for chunk in np.array_split(members, -(-len(members) // size)):
-            reports = calibrate_stand([sessions[k] for k in chunk])
+            reports = calibrate_stand(without_gross([sessions[k] for k in chunk]))
             results.update((int(k), (reports, at)) for at, k in enumerate(chunk))
     return CalibrationBatch([results[k] for k in range(len(sessions))])

@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING
 
 from estimator.calibration.cut_off import require_whole_range
+from estimator.calibration.gross import without_gross
 from estimator.calibration.stand import calibrate_stand
 from estimator.errors import ScheduleError, problem_at
 from estimator.on_demand import function_on_demand
@@ -38,6 +39,14 @@ def calibrate(session: CalibrationSession, *, quadratic: bool | None = None) -> 
 
 
 def averaged(session: CalibrationSession, programmes: tuple[str, ...] = CALIBRATIONS) -> CalibrationSession:
+    """The session with one row a position, gross readings set aside; ScheduleError as `as_it_came`."""
+    [rows] = without_gross([as_it_came(session, programmes)])
+    if session.programme != TWO_AXIS_STAND:
+        require_whole_range(rows)
+    return rows
+
+
+def as_it_came(session: CalibrationSession, programmes: tuple[str, ...] = CALIBRATIONS) -> CalibrationSession:
     """The session with one row a position; ScheduleError where its programme is none of those that calibrate."""
     if session.programme not in programmes:
         hint = "; compare it with a calibration: imu-health parity" if session.programme == IN_SERVICE else ""
@@ -48,7 +57,4 @@ def averaged(session: CalibrationSession, programmes: tuple[str, ...] = CALIBRAT
                 )
             ]
         )
-    rows = average(session, residual_per_freedom, tilt_response) if session.is_raw else session
-    if session.programme != TWO_AXIS_STAND:
-        require_whole_range(rows)
-    return rows
+    return average(session, residual_per_freedom, tilt_response) if session.is_raw else session

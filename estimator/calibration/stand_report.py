@@ -131,6 +131,7 @@ class Reports:
             gauge="stand",
             site=session.site,
             screening=session.screening,
+            set_aside=session.set_aside,
         )
 
 

@@ -6,7 +6,7 @@ record → residuals → signatures → selection → explanation
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from estimator.calibration.calibrate import averaged, calibrate
+from estimator.calibration.calibrate import as_it_came, averaged, calibrate
 from estimator.causes.catalogue import CATALOGUE
 from estimator.causes.contract import Cause
 from estimator.diagnosis.explanation.detection_limits import limits
@@ -18,6 +18,7 @@ from estimator.diagnosis.explanation.record_findings import (
     clip_findings,
     doubted_at_one_place,
     entry_finding,
+    gross_findings,
     is_beyond_gravity,
     record_error_finding,
     scale_findings,
@@ -79,6 +80,8 @@ class PutRight:
     errors: tuple[RecordError, ...]
     """What of the record was corrected."""
     right: Baseline
+    came: Baseline | None
+    """The session as it came, fitted; None where nothing was corrected or set aside."""
     earlier: tuple[Baseline, ...]
     """Of the history, oldest first, without clipped readings, on the scale of the session."""
     scales: tuple[CommonScale, ...]
@@ -95,7 +98,8 @@ def put_right(
     earlier = tuple(earlier_baseline(switched_on_like(h, session), tuple(catalogue)) for h in history)
     errors, right = undo_record_errors(baseline_of(whole), earlier, catalogue)
     scales, earlier = on_one_scale(right, earlier, tuple(catalogue))
-    return PutRight(rows, tuple(clips), tuple(errors), right, earlier, scales)
+    came = baseline_of(as_it_came(session)) if clips or errors or rows.set_aside else None
+    return PutRight(rows, tuple(clips), tuple(errors), right, came, earlier, scales)
 
 
 def switched_on_like(earlier: CalibrationSession, session: CalibrationSession) -> CalibrationSession:
@@ -138,13 +142,14 @@ def diagnosed_so(session: PutRight, catalogue: Sequence[Cause]) -> Diagnosis:
     return Diagnosis(
         unit=right.session.unit,
         findings=(
+            *gross_findings(rows.set_aside, rows),
             *clip_findings(session.clips, rows, state.baseline, calibration),
             *(record_error_finding(e, rows) for e in session.errors),
             *([] if entry is None else [entry_finding(entry)]),
             *with_temperature(changes, warmth),
         ),
         structures=(*wrong_record(wrong, right.session), *structures(state)),
-        gain=gain(state, baseline_of(rows) if session.clips or session.errors else None, fitted, new),
+        gain=gain(state, session.came, fitted, new),
         limits=limits(state),
         noise=noise_scales(state),
         baseline=calibrate(rows),

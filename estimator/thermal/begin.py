@@ -18,6 +18,9 @@ from estimator.thermal.course import TemperatureCourse, course_of
 from estimator.thermal.model import State, ThermalRows
 from estimator.thermal.solve import is_determined
 
+WITHOUT_WEIGHT = 1e6
+"""One sigma, relative to g (1 rad/s), of readings that take no part: as if they were not there, and still finite."""
+
 FORMS = 2
 """Columns of the bias' basis beside the polynomials: a loop, a lag."""
 
@@ -108,9 +111,12 @@ def without_temperature(
         offset[live] = first.offset / gain[live]
         towards, directions, prior = first.directions, model.directions, model.prior
         sigma[:, live] = model.sigma if known else np.nan
+    out = np.isinf(session.standard_errors)
+    sigma[out] = WITHOUT_WEIGHT
     stated = bool((np.isfinite(sigma) & (sigma > 0))[:, live | gyro].all())
     if not stated:
-        sigma = np.where(gyro, y.std(axis=0) + np.finfo(float).eps, UNSTATED_NOISE) * np.ones_like(y)
+        usual = np.where(gyro, y.std(axis=0) + np.finfo(float).eps, UNSTATED_NOISE) * np.ones_like(y)
+        sigma = np.where(out, WITHOUT_WEIGHT, usual)
     middle = np.zeros((len(first_row), 3))
     np.add.at(middle, setting, towards)
     none = np.zeros((R, 0))

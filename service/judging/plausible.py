@@ -12,10 +12,10 @@ from collections.abc import Collection, Iterator, Sequence
 import numpy as np
 
 from estimator.applied_vector import STANDARD_GRAVITY
-from estimator.diagnosis.record.silent import dead_channels
+from estimator.calibration.gross_slips import STUCK
 from estimator.message import joined, say
 from estimator.results import Calibration, SensorCalibration
-from estimator.session import ACCELEROMETER, CALIBRATIONS, GYROSCOPE, IN_SERVICE, Array, CalibrationSession, Sensor
+from estimator.session import ACCELEROMETER, CALIBRATIONS, GYROSCOPE, IN_SERVICE, Array, Sensor
 from service.ingest.checked import Checked
 from service.judging.beside_type import ANOTHER, MOST, beside_type, type_of_references
 from service.judging.origin import of_date, of_moment, of_unit
@@ -73,7 +73,7 @@ def _of_calibration(known: KnownUnit, new: Checked, calibration: Calibration) ->
     beyond = (*_of_scale(found, "nominal value", {s.name: s.nominal_scale for s, _ in found}), *_of_axes(found))
     yield from beyond
     yield from _of_bias(found)
-    yield from _of_dead(new.session)
+    yield from _of_dead(calibration)
     if not beyond and reference is None:
         yield from _beside_its_type(known.store, new, found, calibration)
     elif not beyond and reference is not None:
@@ -119,10 +119,20 @@ def _of_recording(known: KnownUnit, new: Checked) -> Iterator[Doubt]:
             yield Doubt(problem, "the readings are not in the unit of the calibration")
 
 
-def _of_dead(session: CalibrationSession) -> Iterator[Doubt]:
+def _of_dead(calibration: Calibration) -> Iterator[Doubt]:
     """Channels that read the same at every position of a stand."""
-    for name in dead_channels(session):
-        problem = say("{name} has the same reading in every row, although its input changes", name=name)
+    rows = len(calibration.residuals.value)
+    for a in (a for a in calibration.set_aside if a.slip == STUCK and not np.isfinite(a.expected)):
+        problem = (
+            say("{name} has the same reading in every row, although its input changes", name=a.sensor)
+            if (a.row, a.last_row) == (1, rows)
+            else say(
+                "{name} has the same reading in rows {row} to {last}, although its input changes",
+                name=a.sensor,
+                row=a.row,
+                last=a.last_row,
+            )
+        )
         yield Doubt(problem, "the sensor is dead, or its channel is not connected")
 
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from estimator.causes import find
+from estimator.causes.sensor import ReadingOutlier
 from estimator.diagnosis import Finding
 from estimator.diagnosis.explanation.accepted import calibrate_extended
 from estimator.diagnosis.explanation.temperature import LEAST_DIFFERENCE, OF_TEMPERATURE
@@ -249,8 +250,11 @@ def reservations_of(session: Doubted) -> tuple[Reservation, ...]:
 
 def _of_findings(session: Doubted) -> Iterator[Reservation]:
     """Record errors always, and causes that are large. What moved since earlier sessions is what the tolerances judge,
-    and what is in the model already is taken care of."""
+    and what is in the model already, or was set aside before the fit, is taken care of."""
+    out = {(ReadingOutlier.identifier, reading.sensor) for reading in session.yardstick.calibration.set_aside}
     for finding in session.findings:
+        if all((finding.cause, sensor) in out for sensor in finding.sensors or ("",)):
+            continue
         of_record = is_of_record(finding.cause)
         size = None if of_record or not acts_within(finding.cause) else size_of_cause(finding, session.yardstick)
         if of_record or (_is_large(size) and not _is_known(finding, session.known)):

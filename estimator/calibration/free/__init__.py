@@ -19,7 +19,7 @@ from estimator.applied_vector import gravity
 from estimator.calibration.free.excess import explained
 from estimator.calibration.free.gyros import GyroBiases, rest_biases
 from estimator.calibration.free.knowledge import merged, of_accelerometers, of_gyros, of_nothing
-from estimator.calibration.free.model import ModelRows, jacobian, predicted
+from estimator.calibration.free.model import WEIGHTLESS, ModelRows, jacobian, predicted
 from estimator.calibration.free.optional import agreed, solve
 from estimator.calibration.free.report import fit_of_accelerometers, fit_of_gyros, report
 from estimator.calibration.free.schedule import Mask, check, classified
@@ -96,6 +96,7 @@ def residual_per_freedom(session: CalibrationSession) -> float:
     if not solution.knowledge.full or solution.dof < 1:
         return float("inf")
     squares = ((rows.y - predicted(solution.unknowns)) * g / np.exp(solution.unknowns.log_scale)) ** 2
+    squares = np.where(rows.takes_part, squares, 0.0)
     return float(np.sqrt(squares.sum() / solution.dof) * (1 + 1 / np.sqrt(2 * solution.dof)))
 
 
@@ -121,7 +122,8 @@ def tilt_response(session: CalibrationSession) -> Array | None:
 
 
 def accelerometer_rows(session: CalibrationSession, chosen: Mask, g: float) -> tuple[ModelRows, bool]:
-    """Dimensionless rows of the accelerometers, and whether their noise is stated."""
+    """Dimensionless rows of the accelerometers, and whether their noise is stated; readings that take no part have an
+    infinite one."""
     sensors = [s for s, is_chosen in zip(session.sensors, chosen, strict=True) if is_chosen]
     readings, errors = measured(session)
     unit = g * np.array([s.nominal_scale for s in sensors])
@@ -132,11 +134,12 @@ def accelerometer_rows(session: CalibrationSession, chosen: Mask, g: float) -> t
     rows = ModelRows(y, np.full(y.shape, UNSTATED_NOISE), directions, prior, axes)
     gain = np.exp(start(rows).log_scale) if repeatability.any() else 1.0
     sigma = np.hypot(errors[:, chosen] / np.abs(unit), gain * repeatability)
-    if np.all(np.isfinite(sigma) & (sigma > 0)):
+    out = sigma >= WEIGHTLESS
+    usable = ~out & (sigma > 0)
+    if np.all(usable | out):
         return rows.weighted(sigma), True
-    usable = np.isfinite(sigma) & (sigma > 0)
     typical = float(np.median(sigma[usable])) if usable.any() else UNSTATED_NOISE
-    return rows.weighted(np.where(usable, sigma, typical)), False
+    return rows.weighted(np.where(usable | out, sigma, typical)), False
 
 
 def stated_directions(session: CalibrationSession) -> tuple[Array, Array]:

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import brentq
 
-from estimator.calibration.free.model import predicted
+from estimator.calibration.free.model import WEIGHTLESS, predicted
 from estimator.calibration.free.solve import Solution, search
 from estimator.session import Array
 from estimator.significance import p_value
@@ -51,7 +51,7 @@ def added_noise(solution: Solution, stated: Array, dof: int) -> float:
     stated : (R, m) one sigma of the readings, relative to nominal scale times g.
     """
     gain = np.exp(solution.unknowns.log_scale)
-    squares = (solution.rows.y - predicted(solution.unknowns)) ** 2
+    squares = np.where(stated < WEIGHTLESS, (solution.rows.y - predicted(solution.unknowns)) ** 2, 0.0)
     turned = solution.rows.prior[:, None] * (solution.rows.directions - solution.unknowns.directions) ** 2
 
     def surplus(log_sigma: float) -> float:

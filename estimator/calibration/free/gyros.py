@@ -15,6 +15,9 @@ from estimator.calibration.free.excess import UNLIKELY
 from estimator.session import Array
 from estimator.significance import p_value
 
+WEIGHTLESS = 100.0
+"""One sigma, rad/s, from which a reading takes no part: no gyro at rest is as bad."""
+
 
 @dataclass(frozen=True, eq=False)
 class GyroBiases:
@@ -41,7 +44,7 @@ class GyroBiases:
     @property
     def dof(self) -> int:
         """Readings, less one bias a gyro."""
-        return self.residual.size - len(self.bias)
+        return int((self.noise < WEIGHTLESS).sum()) - len(self.bias)
 
 
 def rest_biases(readings: Array, standard_errors: Array, repeatability: Array) -> GyroBiases:
@@ -50,19 +53,23 @@ def rest_biases(readings: Array, standard_errors: Array, repeatability: Array) -
     Parameters
     ----------
     readings : (R, k) rad/s by the nominal scale, nominal offset taken off.
-    standard_errors : (R, k) rad/s; NaN where not stated: then the scatter of the rows is taken.
+    standard_errors : (R, k) rad/s; NaN where not stated: then the scatter of the rows is taken; beyond
+        `WEIGHTLESS` where a reading takes no part.
     repeatability : (k,) rad/s.
     """
-    R = len(readings)
-    scatter = readings.std(axis=0, ddof=1) if R > 1 else np.abs(readings[0])
-    known = np.isfinite(standard_errors)
+    out, known = standard_errors > WEIGHTLESS, ~np.isnan(standard_errors)
+    R = np.maximum((~out).sum(axis=0), 1)
+    middle = np.where(out, 0.0, readings).sum(axis=0) / R
+    squared = np.where(out, 0.0, (readings - middle) ** 2).sum(axis=0)
+    scatter = np.where(R > 1, np.sqrt(squared / np.maximum(R - 1, 1)), np.abs(readings[0]))
     noise = np.where(known, np.hypot(np.where(known, standard_errors, 0.0), repeatability), scatter)
     variance = noise**2 + EARTH_RATE**2 / 3
     bias = (readings / variance).sum(axis=0) / (1 / variance).sum(axis=0)
     sigma = 1 / np.sqrt((1 / variance).sum(axis=0))
     squares = ((readings - bias) ** 2 / variance).sum(axis=0)
-    restless = p_value(squares, max(R - 1, 1)) < UNLIKELY
-    sigma = sigma * np.where(restless, np.sqrt(squares / max(R - 1, 1)), 1.0)
+    spare = np.maximum(R - 1, 1)
+    restless = p_value(squares, spare) < UNLIKELY
+    sigma = sigma * np.where(restless, np.sqrt(squares / spare), 1.0)
     estimated = restless | ~known.all(axis=0)
-    freedom = np.where(estimated, R - 1.0 if R > 1 else np.nan, np.inf)
+    freedom = np.where(estimated, np.where(R > 1, R - 1.0, np.nan), np.inf)
     return GyroBiases(bias, sigma, readings - bias, noise, bool(known.all()), freedom)

@@ -31,6 +31,10 @@ LEAST_TURN = 1e-13
 hundred roundings, far below what any reading resolves."""
 
 
+WEIGHTLESS = 100.0
+"""One sigma, in g, from which a reading takes no part: no accelerometer is as bad."""
+
+
 @dataclass(frozen=True, eq=False)
 class ModelRows:
     """What was measured, dimensionless. R orientations, m accelerometers."""
@@ -38,7 +42,7 @@ class ModelRows:
     y: Array
     """(R, m) readings over nominal scale times g, nominal offset taken off."""
     sigma: Array
-    """(R, m) one sigma of y, dimensionless."""
+    """(R, m) one sigma of y, dimensionless; infinite, or beyond `WEIGHTLESS`, of readings that take no part."""
     directions: Array
     """(R, 3) stated directions, unit vectors; zeros where not stated."""
     prior: Array
@@ -50,6 +54,17 @@ class ModelRows:
     def held(self) -> bool:
         """Whether stated directions hold the block's frame."""
         return bool(np.any(self.prior > 0))
+
+    @property
+    def takes_part(self) -> Array:
+        """(R, m) bool"""
+        return self.sigma < WEIGHTLESS
+
+    @property
+    def spare(self) -> int:
+        """Readings and stated directions beyond the two turns of every orientation."""
+        told = self.takes_part.sum(axis=1) + 2 * (self.prior > 0)
+        return int(np.maximum(told - 2, 0).sum())
 
     def weighted(self, sigma: Array) -> "ModelRows":
         """The same readings under another noise, dimensionless: (R, m) or anything that broadcasts to it."""

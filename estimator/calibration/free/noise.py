@@ -63,12 +63,14 @@ class ProjectedNoise:
     """(R, m, F) how the fitted value of each reading leans on the seen directions."""
     residual: Array
     """(R, m) in sigmas."""
+    takes_part: Array
+    """(R, m) bool"""
 
     @property
     def redundancy(self) -> Array:
         """(R, m) part of each reading's variance that the fit leaves in its residual, without unit."""
         direct = np.diagonal(self.turns, axis1=1, axis2=2)
-        return np.clip(1.0 - direct - (self.lean**2).sum(axis=-1), 0.0, 1.0)
+        return np.where(self.takes_part, np.clip(1.0 - direct - (self.lean**2).sum(axis=-1), 0.0, 1.0), 0.0)
 
     @property
     def shares(self) -> Array:
@@ -79,7 +81,7 @@ class ProjectedNoise:
     @property
     def overlap(self) -> Array:
         """(m, m) T, without unit."""
-        complement = np.eye(self.turns.shape[1]) - self.turns
+        complement = np.eye(self.turns.shape[1]) * self.takes_part[:, None, :] - self.turns
         flat = self.shares.reshape(len(complement[0]), -1)
         return (complement**2 - 2.0 * complement * (self.lean @ np.swapaxes(self.lean, 1, 2))).sum(
             axis=0
@@ -93,7 +95,7 @@ def projected(rows: ModelRows, unknowns: Unknowns, knowledge: Information) -> Pr
     root = scaled(knowledge)
     moved = np.einsum("rma,rpa->rmp", through, linear.coupling) @ root
     local = np.einsum("rmi,mif->rmf", linear.local, root.reshape(rows.y.shape[1], 5, -1))
-    return ProjectedNoise(through @ np.swapaxes(linear.shared, 1, 2), local - moved, linear.residual)
+    return ProjectedNoise(through @ np.swapaxes(linear.shared, 1, 2), local - moved, linear.residual, rows.takes_part)
 
 
 def scaled(knowledge: Information) -> Array:
@@ -141,7 +143,8 @@ def search_with_noise(rows: ModelRows, unknowns: Unknowns, quadratic: bool) -> S
     for _ in range(ROUNDS if projection.redundancy.sum() > NO_FREEDOM else 0):
         noise = noise.improved((projection.residual**2).sum(axis=0), projection.redundancy.sum(axis=0))
         sigma = np.maximum(rows.sigma * np.sqrt(noise.factor), LEAST_NOISE)
-        change = np.abs(sigma / solution.rows.sigma - 1.0).max()
+        taking = rows.takes_part
+        change = np.abs(sigma[taking] / solution.rows.sigma[taking] - 1.0).max()
         solution = search(rows.weighted(sigma), solution.unknowns, quadratic)
         projection = projected(solution.rows, solution.unknowns, solution.knowledge)
         iterations += solution.iterations

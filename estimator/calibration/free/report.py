@@ -35,7 +35,7 @@ def fit_of_accelerometers(
         chi2=solution.chi2,
         dof=solution.dof,
         p_value=float(p_value(solution.chi2, solution.dof)) if stated and solution.dof > 0 else None,
-        residual_rms=float(np.sqrt(np.mean(known.residual**2))),
+        residual_rms=float(np.sqrt(np.mean(known.residual[solution.rows.takes_part] ** 2))),
         noise="stated" if stated else "estimated",
         covariance_factor=1.0 if used is solution else solution.chi2 / solution.dof,
         rank=used.knowledge.rank,
@@ -138,4 +138,5 @@ def report(session: CalibrationSession, known: Knowledge, fit: Fit, gauge: str) 
         gauge=gauge,
         site=session.site,
         screening=session.screening,
+        set_aside=session.set_aside,
     )

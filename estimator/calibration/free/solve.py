@@ -75,9 +75,7 @@ class Solution:
     @property
     def dof(self) -> int:
         """Readings and stated directions, less what was estimated: parameters seen and two turns an orientation."""
-        stated = 2 * int(np.count_nonzero(self.rows.prior))
-        R, m = self.rows.y.shape
-        return R * m + stated - 2 * R - self.knowledge.rank
+        return self.rows.spare - self.knowledge.rank
 
 
 def held_frame(rows: ModelRows, unknowns: Unknowns) -> Unknowns:

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 from estimator.calibration.calibrate import averaged, calibrate
 from estimator.causes.catalogue import cause
+from estimator.causes.sensor import ReadingOutlier
 from estimator.diagnosis.explanation.extended_model import amplitudes, extended_calibration
 from estimator.diagnosis.record.clipping import unclipped
 from estimator.diagnosis.residuals.flipped_run import with_its_flip
@@ -36,6 +37,8 @@ def calibrate_extended(session: CalibrationSession, causes: Sequence[Accepted]) 
     clips, whole = unclipped(rows, known)
     state = begin(with_its_flip(whole), (), known, patterns=())
     done = {(clip.cause.identifier, (clip.sensor,)) for clip in clips}
+    names = [sensor.name for sensor in rows.sensors]
+    done |= {(ReadingOutlier.identifier, (names.index(out.sensor),)) for out in rows.set_aside}
     for identifier, sensors in causes:
         for place in places(rows, sensors):
             if (identifier, place) not in done:

@@ -6,9 +6,10 @@ from dataclasses import replace
 import numpy as np
 
 from estimator.applied_vector import ONE_PLACE, common_factors
+from estimator.calibration.gross_slips import sentences
 from estimator.causes.record import GravityEntry, SensorDrift
 from estimator.causes.sensor import ReadingOutlier
-from estimator.diagnosis.explanation.naming import merged, named_cause
+from estimator.diagnosis.explanation.naming import listed, merged, named_cause
 from estimator.diagnosis.explanation.rivals import CREDIBLE, SHOWN
 from estimator.diagnosis.explanation.temperature import shared
 from estimator.diagnosis.record.clipping import Clip
@@ -20,9 +21,37 @@ from estimator.diagnosis.record.turned import LEAST
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.results import Finding, Rival, Separation, Structure
 from estimator.forward import measured
-from estimator.message import joined, say
+from estimator.message import capitalised, joined, say
 from estimator.results import Calibration
-from estimator.session import ACCELEROMETER, CalibrationSession
+from estimator.session import ACCELEROMETER, CalibrationSession, SetAside
+
+OUTLIER = ReadingOutlier()
+
+
+def gross_findings(readings: Sequence[SetAside], session: CalibrationSession) -> tuple[Finding, ...]:
+    """Readings of a session that were set aside, as one finding; they took no part in anything else."""
+    known = [r for r in readings if np.isfinite(r.size)]
+    if not known:
+        return ()
+    found = merged([(OUTLIER, gross_finding(r, session)) for r in known])
+    advice = joined(" ", sentences(known))
+    if all(r.last_row > r.row for r in known):
+        stood = say("{sensors} stood still for several rows.", sensors=listed(found[0].sensors))
+        return (replace(found[0], sentence=capitalised(stood), advice=advice),)
+    return tuple(replace(f, advice=advice) for f in found)
+
+
+def gross_finding(reading: SetAside, session: CalibrationSession) -> Finding:
+    """One of them."""
+    kinds = {sensor.name: sensor.kind for sensor in session.sensors}
+    return replace(
+        named_cause(OUTLIER, (reading.sensor,), 0.0, reading.strength),
+        amplitude=(reading.size,),
+        sigma=(reading.sigma,),
+        units=("m/s²" if kinds[reading.sensor] == ACCELEROMETER else "rad/s",),
+        nonlinear_each=({"row": float(reading.row)},),
+        ranking=(Rival(OUTLIER.identifier, (reading.sensor,), 1.0, reading.strength),),
+    )
 
 SCALED = (
     "All scale factors{of_kind} changed together by {change} % since the earlier sessions, more than gravity, latitude "
@@ -175,5 +204,14 @@ def wrong_record(axes: ImplausibleAxes | None, session: CalibrationSession) -> t
     names = tuple(session.sensors[i].name for i in axes.sensors)
     who = "input axes" if names else "the whole block"
     parts = {"who": who, "angle": f"{np.degrees(axes.angle):.0f}"}
+    if axes.step is not None:
+        where = say(
+            "a zero that differs by {step} {unit} between the direct and the flipped run, or an input axis {angle}° "
+            "wrong: the two do the same to these readings; repeat both runs without switching off between them",
+            step=f"{axes.step:.3g}",
+            unit="m/s²" if session.sensors[axes.sensors[0]].kind == ACCELEROMETER else "rad/s",
+            angle=f"{np.degrees(axes.angle):.0f}",
+        )
+        return (Structure(where, names, 0.0, axes.angle / float(np.sqrt(LEAST))),)
     where = say("{who} {angle}° wrong: columns, runs or angles of the record are mixed up", **parts)
     return (Structure(where, names, 0.0, axes.angle / float(np.sqrt(LEAST)), of_record=True),)

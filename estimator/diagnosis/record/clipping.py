@@ -24,7 +24,7 @@ from estimator.diagnosis.record.expected import (
     who_may_misfit,
 )
 from estimator.diagnosis.residuals.baseline import Baseline
-from estimator.diagnosis.residuals.fitted import baseline_of
+from estimator.diagnosis.residuals.fitted import FREE, baseline_of
 from estimator.session import ACCELEROMETER, TWO_AXIS_STAND, Array, CalibrationSession
 
 FEWEST = 2
@@ -37,9 +37,6 @@ the noise of a sample, which a rest of a thousand samples hardly shows."""
 LEVEL = 1e-6
 """p-value below which a sensor is clipped, shared among sensors and sides: its readings are left out, which must not
 happen by chance once in the life of a fleet."""
-
-FREE = 1e3
-"""Standard error given to a clipped reading, in ranges of the sensor's readings: it takes no part any more."""
 
 UPPER, LOWER = 1.0, -1.0
 """Sides of the range."""

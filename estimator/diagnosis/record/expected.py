@@ -142,7 +142,7 @@ def in_orientations(session: CalibrationSession, cells: Sequence[Cells]) -> list
     for i, rows in cells:
         sigma[rows, place[i]] = UNWEIGHTED
     solution = solve(prepared.weighted(sigma), True, None)
-    spare = solution.dof - sum(len(rows) for _, rows in cells)
+    spare = solution.dof
     believed = stated and spare > 0 and p_value(solution.chi2, spare) >= UNLIKELY
     if not solution.converged or (spare < SPARE and not believed):
         return [None] * len(cells)

@@ -1,34 +1,25 @@
-"""Channels that read the same in every row: they take no part in a calibration, and nothing can be diagnosed of them.
-
-Along the axis that a stand turns about, in one run, a sensor that is alive does so too; a dead one does where its input
-changes.
-"""
+"""Channels that read the same in every row: they take no part in a calibration, and nothing is diagnosed of them."""
 
 import numpy as np
 
-from estimator.applied_vector import stand_geometry
 from estimator.calibration.analytic import answers
 from estimator.calibration.calibrate import averaged
 from estimator.errors import Problem, ScheduleError
-from estimator.forward import measured, response
-from estimator.parameters import nominal
+from estimator.forward import measured
 from estimator.session import TWO_AXIS_STAND, Array, CalibrationSession
 
-LEAST_CHANGE = 0.05
-"""Part of gravity (of the Earth's rate) by which the input along the nominal axis must change over the rows for a
-constant reading to tell of a dead channel: 3°, more than axes are mounted off."""
-
-LEAST_COUNTS = 2.0
-"""Counts by which a reading in whole counts must be expected to change: fewer may round to the same."""
-
 SAME = "has the same reading in every row, so nothing can be estimated from it"
+MOSTLY = "stands still over most of the rows, so nothing can be estimated from it: repeat the session, or leave it out"
 
 
 def refuse_silent(session: CalibrationSession) -> None:
     """ScheduleError where a channel of a session on a stand reads the same in every row."""
-    names = silent_channels(session)
-    if names:
-        raise ScheduleError([Problem(name, SAME) for name in names])
+    constant, names = silent_channels(session), [sensor.name for sensor in session.sensors]
+    stopped = [names[i] for i in np.flatnonzero(np.isinf(session.standard_errors).all(axis=0))]
+    problems = [Problem(name, SAME) for name in constant]
+    problems += [Problem(name, MOSTLY) for name in stopped if name not in constant]
+    if problems:
+        raise ScheduleError(problems)
 
 
 def silent_channels(session: CalibrationSession) -> tuple[str, ...]:
@@ -37,19 +28,6 @@ def silent_channels(session: CalibrationSession) -> tuple[str, ...]:
         return ()
     rows = averaged(session)
     return _named(rows, ~answers(measured(rows)[0]))
-
-
-def dead_channels(session: CalibrationSession) -> tuple[str, ...]:
-    """Sensors of a session on a stand that read the same in every row, although their input changes."""
-    if session.programme != TWO_AXIS_STAND:
-        return ()
-    rows = averaged(session)
-    geometry, like = stand_geometry(rows), nominal(rows.sensors)
-    expected = np.ptp(response(like, geometry.n), axis=0)
-    in_counts = np.all(rows.readings == np.round(rows.readings), axis=0)
-    counts = expected * (rows.count_time or 1.0)
-    moved = (expected > LEAST_CHANGE * like.scale * geometry.norm) & ~(in_counts & (counts < LEAST_COUNTS))
-    return _named(rows, ~answers(measured(rows)[0]) & moved)
 
 
 def _named(session: CalibrationSession, chosen: Array) -> tuple[str, ...]:

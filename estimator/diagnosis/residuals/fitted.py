@@ -30,13 +30,26 @@ from estimator.forward import input_of, measured, projected, slope
 from estimator.parameters import SensorParameters, together
 from estimator.session import ACCELEROMETER, GYROSCOPE, TWO_AXIS_STAND, Array, CalibrationSession
 
+FREE = 1e3
+"""Standard error of a reading that takes no part, in ranges of the sensor's readings: as if it were not there."""
+
 
 def baseline_of(session: CalibrationSession, start: SensorParameters | None = None) -> Baseline:
     """The baseline simulation fitted to an averaged session, its noise as stated (or estimated where it is not).
 
     ``start``, of m sensors: where what the session does not observe stays; by default near the nominal values.
     """
+    session = weightless(session)
     return on_stand(session, start) if session.programme == TWO_AXIS_STAND else in_orientations(session)
+
+
+def weightless(session: CalibrationSession) -> CalibrationSession:
+    """The session with readings that were set aside left without weight by a standard error that is finite, since
+    causes are weighed by it."""
+    if not session.set_aside:
+        return session
+    free = np.broadcast_to(FREE * np.ptp(session.readings, axis=0), session.readings.shape)
+    return replace(session, standard_errors=np.where(np.isinf(session.standard_errors), free, session.standard_errors))
 
 
 def readings_without(session: CalibrationSession, scale: Array, effect: Array) -> Array:

@@ -53,7 +53,7 @@ def without_formula(
     if not isinstance(cause, SharedCourse):
         return
     sensors, kind = [f.best.sensors[0] for f in members], kind_of(members[0].best.shape.nonlinear)
-    waves, size = KINDS[kind](setting.rows), np.sqrt(residuals.baseline.variance.mean(axis=0))[sensors]
+    waves, size = KINDS[kind](setting.rows), np.sqrt(np.median(residuals.baseline.variance, axis=0))[sensors]
     columns = np.zeros((setting.rows, len(setting.kinds), len(sensors), waves.shape[1]))
     columns[:, sensors, np.arange(len(sensors))] = waves[:, None, :] * size[:, None]
     rows = residuals.whitened(columns.reshape(*columns.shape[:2], -1))[remaining]

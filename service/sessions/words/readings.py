@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 from math import isfinite, sqrt
 
+from estimator.calibration.gross_slips import sentences
 from estimator.message import joined, say, say_count
 from estimator.moments import duration
 from estimator.results import Calibration, Fit, KnownCombination
@@ -32,7 +33,10 @@ def fit_in_words(calibration: Calibration) -> FitWords:
     """What χ² and its probability say, and what to be careful of."""
     fit = calibration.fit
     headline = too_few(calibration) or _headline(fit)
-    return beside_screening(FitWords(headline, _detail(fit), (*_warnings(fit), *_open(calibration))), calibration)
+    left_out = sentences(calibration.set_aside)
+    return beside_screening(
+        FitWords(headline, _detail(fit), (*left_out, *_warnings(fit), *_open(calibration))), calibration
+    )
 
 
 def beside_screening(words: FitWords, calibration: Calibration) -> FitWords:

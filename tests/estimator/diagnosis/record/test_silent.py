@@ -8,11 +8,17 @@ import numpy as np
 import pytest
 
 from estimator import ScheduleError, diagnose, read_session
-from estimator.diagnosis.record.silent import dead_channels, silent_channels
+from estimator.calibration import calibrate
+from estimator.diagnosis.record.silent import silent_channels
 from estimator.session import CalibrationSession
 from tests.builders import accelerometer_block, gyro_block
 
 BLOCKS = pytest.mark.parametrize("block", [accelerometer_block, gyro_block])
+
+
+def dead_channels(session: CalibrationSession) -> tuple[str, ...]:
+    """Those set aside in every row."""
+    return tuple(a.sensor for a in calibrate(session).set_aside if a.last_row - a.row + 1 == len(session.readings))
 
 
 def constant(session: CalibrationSession, value: float) -> CalibrationSession:
