@@ -33,14 +33,14 @@ from estimator.on_demand import names_on_demand
 
 if TYPE_CHECKING:
     from estimator.parity.check import ParityAccumulator, parity_check
-    from estimator.parity.results import ParityResult
+    from estimator.parity.results import CourseFault, ParityResult
 else:
     __getattr__ = names_on_demand(
         __name__,
         {
             "check": "ParityAccumulator parity_check",
-            "results": "ParityResult",
+            "results": "CourseFault ParityResult",
         },
     )
 
-__all__ = ["ParityAccumulator", "ParityResult", "parity_check"]
+__all__ = ["CourseFault", "ParityAccumulator", "ParityResult", "parity_check"]

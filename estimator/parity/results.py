@@ -10,6 +10,10 @@ from estimator.session import Array
 BIAS, SCALE, AXIS, SEVERAL = "bias", "scale", "axis", "several"
 KINDS = (BIAS, SCALE, AXIS, SEVERAL)
 """``several``: bias, scale and axis of one sensor together."""
+STEP, RAMP, STUCK, ZERO, FULL_SCALE, GAIN = "step", "ramp", "stuck", "zero", "full-scale", "gain"
+NOISE, DELAY, EXCHANGED, INTERMITTENT = "noise", "delay", "exchanged", "intermittent"
+COURSE_KINDS = (STEP, RAMP, STUCK, ZERO, FULL_SCALE, GAIN, NOISE, DELAY, EXCHANGED, INTERMITTENT)
+"""How a sensor fails in service."""
 
 
 @dataclass(frozen=True)
@@ -25,6 +29,31 @@ class Candidate:
     """Generalised likelihood ratio: the fall of χ²."""
     p_value: float
     """Of the ratio, for this hypothesis alone."""
+
+
+@dataclass(frozen=True)
+class CourseFault:
+    """A sensor that fails within the recording, or all through it."""
+
+    sensor: str | None
+    """None where parity cannot say which of the ``suspects``: then there are two at least."""
+    suspects: tuple[str, ...]
+    """Sensors that explain it about equally well, the likeliest first; the ``sensor`` alone where one is named."""
+    kind: str
+    """One of `COURSE_KINDS`."""
+    since: float
+    """s since the start, or rows where no rate is known; 0 where it lasts from the first."""
+    until: float | None
+    """Like ``since``; None where it lasts to the end."""
+    since_sigma: float
+    """One sigma of ``since``, its unit."""
+    size: float | None
+    """Of the sensor's change: step, zero, full scale, intermittent m/s² (rad/s); ramp m/s² (rad/s) per second; gain
+    relative; noise m/s² (rad/s), one sigma of a sample; delay s. None where it cannot be told."""
+    sigma: float | None
+    """One sigma of ``size``, its unit."""
+    p_value: float
+    """Chance of so much in a sound recording, over everything that was looked at."""
 
 
 @dataclass(frozen=True)
@@ -74,8 +103,16 @@ def _before_motion(document: Json) -> Json:
 
 
 @dataclass(frozen=True, eq=False)
-class ParityResult(Document, format="imu-parity/1", earlier=_before_motion):
-    """A recording of a redundant block beside its reference calibration."""
+class ParityResult(
+    Document,
+    format="imu-parity/1",
+    earlier=_before_motion,
+    optional=("before", "after", "course_fine", "course_fine_time", "course_fine_sigma"),
+):
+    """A recording of a redundant block beside its reference calibration.
+
+    Where a sensor begins to fail within it (``faults``), all but the faults and the fine course is of the part before.
+    """
 
     unit: str
     kind: str
@@ -136,6 +173,18 @@ class ParityResult(Document, format="imu-parity/1", earlier=_before_motion):
     """(m,) scatter of the groups about the fit."""
     course_time: Array
     """(groups,) middle of each group, s since the start; blocks where no rate is known."""
+    faults: tuple[CourseFault, ...] = ()
+    """Sensors that fail within the recording or all through it, the earliest first."""
+    before: "ParityResult | None" = None
+    """The part before the first fault, and ``after`` the part after it, without a sensor that says nothing any more;
+    None without a fault, and where the part is too short."""
+    after: "ParityResult | None" = None
+    course_fine: Array | None = None
+    """(n, m) course of V·Vᵀa over the whole recording, m/s² (rad/s)."""
+    course_fine_time: Array | None = None
+    """(n,) middle of each, s since the start; rows where no rate is known."""
+    course_fine_sigma: Array | None = None
+    """(m,) one sigma of a point of it while the sensors are sound, m/s² (rad/s)."""
 
     def sensor(self, name: str) -> SensorParity:
         """The sensor called ``name``; KeyError if there is none."""
