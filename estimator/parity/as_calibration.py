@@ -2,8 +2,10 @@
 
 Of every parameter: the reference's value and the change that the recording shows, each as if it alone had changed, or
 beside the change of the isolated sensor. The uncertainty is that of the change. Of the second-order term parity says
-nothing.
+nothing. Where a sensor fails within the recording, the part before tells the parameters.
 """
+
+from dataclasses import replace
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -14,29 +16,41 @@ from estimator.results import Calibration, Estimate, Fit, Residuals, SensorCalib
 from estimator.session import ACCELEROMETER, Array
 
 METHOD = "in-service/parity"
+NOTHING = Sight(None, None, None, None)
+"""Of a parameter that the recording tells nothing of."""
+
+
+def before_faults(result: ParityResult) -> ParityResult:
+    """The part before a sensor fails; nothing is seen of a sensor that it does not hold, nor where it is too short."""
+    if not result.faults:
+        return result
+    seen = {} if result.before is None else {sensor.name: sensor for sensor in result.before.sensors}
+    blind = (replace(sensor, bias=NOTHING, scale=NOTHING, axis=NOTHING) for sensor in result.sensors)
+    return replace(result.before or result, sensors=tuple(seen.get(sensor.name, sensor) for sensor in blind))
 
 
 def parity_calibration(result: ParityResult, reference: Calibration) -> Calibration:
     """The reference moved by what the recording shows, sensor by sensor; ``parity`` holds the whole result."""
-    pairs = [(sensor, reference.sensor(sensor.name)) for sensor in result.sensors]
+    known = before_faults(result)
+    pairs = [(sensor, reference.sensor(sensor.name)) for sensor in known.sensors]
     sensors = tuple(moved(sensor, known) for sensor, known in pairs)
     covariance = block_diag(*(covariance_of(sensor, known) for sensor, known in pairs))
-    places = [reference.names.index(name) for name in names(result)]
+    places = [reference.names.index(name) for name in names(known)]
     return Calibration(
         unit=result.unit,
         method=METHOD,
         sensors=sensors,
-        names=names(result),
+        names=names(known),
         units=tuple(reference.units[k] for k in places),
         covariance=covariance,
         repeatability=covariance,
-        fit=fit(result),
+        fit=fit(known),
         residuals=Residuals(
-            value=result.course,
-            sigma=np.broadcast_to(result.course_sigma, result.course.shape),
+            value=known.course,
+            sigma=np.broadcast_to(known.course_sigma, known.course.shape),
             beta=None,
             flipped=None,
-            time=result.course_time,
+            time=known.course_time,
             temperature=None,
         ),
         gauge="parity",

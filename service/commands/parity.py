@@ -10,9 +10,12 @@ from rich.text import Text
 
 from estimator import calibrate
 from estimator.parity import ParityAccumulator, ParityResult
+from estimator.parity.as_calibration import before_faults
 from estimator.parity.results import Sight
 from service.commands.console import AsJson, print_json, screen, usable
 from service.ingest.stream import open_recording, session_in
+from service.judging.fault_words import faults_in_words, said_of
+from service.judging.parity_words import parts_in_words
 from service.judging.words import found_in_words
 from service.kit.measures import COVERAGE, in_words
 
@@ -31,15 +34,15 @@ def parity(
     """Judge a recording in service by what the redundant sensors say of one another; no stand needed."""
     if motion not in ("auto", "still", "any"):
         raise typer.BadParameter(f"motion is {motion!r}; choose auto, still or any")
-    result = _result(file, reference, motion, false_alarm)
+    result, started_at = _result(file, reference, motion, false_alarm)
     if as_json:
         print_json(result.to_dict())
     else:
-        screen().print(parity_view(result))
+        screen().print(parity_view(result, started_at))
 
 
-def _result(file: Path, reference: Path, motion: str, false_alarm: float) -> ParityResult:
-    """Exit code 2 with one line when either file cannot be used."""
+def _result(file: Path, reference: Path, motion: str, false_alarm: float) -> tuple[ParityResult, str | None]:
+    """With when the recording began, in UTC; exit code 2 with one line when either file cannot be used."""
     with usable(reference):
         calibration = calibrate(session_in(reference))
     with usable(file):
@@ -56,19 +59,22 @@ def _result(file: Path, reference: Path, motion: str, false_alarm: float) -> Par
         )
         for chunk in recording.chunks:
             accumulator.add(chunk)
-        return accumulator.result(motion=motion, false_alarm=false_alarm)
+        return accumulator.result(motion=motion, false_alarm=false_alarm), head.started_at
 
 
-def parity_view(result: ParityResult) -> RenderableType:
-    """The finding in a sentence, then every sensor: its apparent change, and the detection limit."""
+def parity_view(result: ParityResult, started_at: str | None) -> RenderableType:
+    """The finding in a sentence, then every sensor: its apparent change, and the detection limit; where one fails
+    within the recording, by the part before."""
+    faults, known = faults_in_words(result, started_at), before_faults(result)
     table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
     for heading in ("sensor", "visible", *(f"{name}{part}" for name in PARAMETERS for part in ("", ", seen from"))):
         table.add_column(heading, justify="left" if heading == "sensor" else "right", no_wrap=True)
-    for sensor in result.sensors:
+    for sensor in known.sensors:
         cells = [cell for name in PARAMETERS for cell in _cells(result.kind, name, getattr(sensor, name))]
         table.add_row(sensor.name, f"{100 * sensor.visible_share:.0f} %", *cells)
     return Group(
-        Text.assemble((result.unit, "bold"), f": {found_in_words(result)}."),
+        Text.assemble((result.unit, "bold"), f": {said_of(faults) if faults else f'{found_in_words(result)}.'}"),
+        *map(Text, parts_in_words(result)),
         Text(f"χ² {result.chi2:.1f} of {result.dof} numbers, p = {result.p_value:.3g}; {_used(result)}."),
         table,
     )

@@ -13,6 +13,7 @@ from estimator.health.temperature_law import NO_STEPS, Steps, at_reference
 from estimator.message import say
 from estimator.results import Calibration
 from service.judging.calibrate import ReferenceComparison
+from service.judging.fault_words import faults_in_words
 from service.judging.words import first_in_words, reason, recording_in_words
 from service.kit.lock_order import outside_writing
 from service.models.records import MovedParameter, MovedVerdict
@@ -71,11 +72,13 @@ def decisions_of(
 def judge_recording(
     moved: Calibration, found: ReferenceComparison, unit_type: UnitType, coverage_factor: float
 ) -> Judged:
-    """Every parameter that parity sees, judged, and the recording by its worst."""
+    """Every parameter that parity sees, judged, and the recording by its worst, or by a sensor that fails within it."""
     tolerances = tolerances_of(unit_type)
     seen = judge_parity(found.result, found.reference, tolerances, coverage_factor=coverage_factor)
     decisions = _decisions(seen, PARITY_RULE, unit_type)
-    return Judged(moved, decisions, recording_in_words(found.result, decisions), is_reference=False)
+    faults = faults_in_words(found.result, found.started_at)
+    said = recording_in_words(found.result, decisions, faults)
+    return Judged(moved, decisions, said, is_reference=False, faults=faults)
 
 
 def _decisions(judgements: Iterable[ParameterJudgement], rule: str, unit_type: UnitType) -> tuple[Decision, ...]:

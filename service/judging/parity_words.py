@@ -4,7 +4,16 @@ from collections.abc import Iterator
 
 from estimator.message import capitalised, joined, say
 from estimator.parity import ParityResult
-from service.judging.words import CHANGED, MOST_CANDIDATES, SAME, TOO_MUCH_MOTION, clipped_in_words, stillness
+from service.judging.words import (
+    CHANGED,
+    MOST_CANDIDATES,
+    SAME,
+    TOO_MUCH_MOTION,
+    clipped_in_words,
+    found_in_words,
+    stillness,
+    within,
+)
 from service.kit.measures import number
 from service.sessions.words.readings import FitWords
 
@@ -28,7 +37,7 @@ def agreement_in_words(result: ParityResult) -> FitWords:
     chance = "less than 0.01" if result.p_value < SMALLEST else number(100 * result.p_value, 1)
     quiet = TOO_MUCH_MOTION if result.moving else SAME
     return FitWords(
-        headline=say("{result}.", result=CHANGED if result.detected else quiet),
+        headline=say("{result}.", result=CHANGED if result.detected or result.faults else quiet),
         detail=say(
             "χ² = {chi2} for {dof} numbers; an unchanged block gives this much or more in {chance} % of recordings.",
             chi2=number(result.chi2, 1),
@@ -37,6 +46,25 @@ def agreement_in_words(result: ParityResult) -> FitWords:
         ),
         warnings=tuple(_warnings(result)),
     )
+
+
+def parts_in_words(result: ParityResult) -> tuple[str, ...]:
+    """What parity says of the part before a sensor fails, and of the part after; none where none does."""
+    if not result.faults:
+        return ()
+    after = set() if result.after is None else {sensor.name for sensor in result.after.sensors}
+    left_out = joined(", ", (sensor.name for sensor in result.sensors if sensor.name not in after))
+    without = say(", without {sensors}", sensors=left_out) if result.after is not None and left_out else ""
+    return (
+        say("Before that: {found}.", found=_of_part(result.before)),
+        say("From then on{without}: {found}.", without=without, found=_of_part(result.after)),
+    )
+
+
+def _of_part(part: ParityResult | None) -> str:
+    if part is None:
+        return "too short to be judged"
+    return within(found_in_words(part)) if part.detected or part.moving else "no change since the calibration"
 
 
 def _warnings(result: ParityResult) -> Iterator[str]:
