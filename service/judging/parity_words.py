@@ -52,18 +52,17 @@ def parts_in_words(result: ParityResult) -> tuple[str, ...]:
     """What parity says of the part before a sensor fails, and of the part after; none where none does."""
     if not result.faults:
         return ()
-    after = set() if result.after is None else {sensor.name for sensor in result.after.sensors}
-    left_out = joined(", ", (sensor.name for sensor in result.sensors if sensor.name not in after))
+    kept = set() if result.after is None else {sensor.name for sensor in result.after.sensors}
+    left_out = joined(", ", (sensor.name for sensor in result.sensors if sensor.name not in kept))
     without = say(", without {sensors}", sensors=left_out) if result.after is not None and left_out else ""
-    return (
-        say("Before that: {found}.", found=_of_part(result.before)),
-        say("From then on{without}: {found}.", without=without, found=_of_part(result.after)),
-    )
+    before = say("Before that: {found}.", found=_of_part(result.before))
+    after = say("From then on{without}: {found}.", without=without, found=_of_part(result.after))
+    return (before, after) if result.faults[0].since > 0 else (after,)
 
 
 def _of_part(part: ParityResult | None) -> str:
     if part is None:
-        return "too short to be judged"
+        return "too little to be judged"
     return within(found_in_words(part)) if part.detected or part.moving else "no change since the calibration"
 
 

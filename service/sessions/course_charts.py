@@ -161,9 +161,7 @@ def _spec() -> Json:
 
 def _labels(faults: "alt.Chart") -> "list[alt.Chart]":
     """Beside the moment, where there is more room."""
-    return [
-        faults.transform_filter(f"datum.late == {late}")
-        .mark_text(color="var(--fail)", fontWeight="bold", align=align, baseline="top", dx=dx)
-        .encode(text="text:N", y=alt.value(4))
-        for late, align, dx in (("false", "left", 4), ("true", "right", -4))
-    ]
+    look: Json = {"color": "var(--fail)", "fontWeight": "bold", "baseline": "top"}
+    early = faults.transform_filter("!datum.late").mark_text(align="left", dx=4, **look)
+    late = faults.transform_filter("datum.late").mark_text(align="right", dx=-4, **look)
+    return [label.encode(text="text:N", y=alt.value(4)) for label in (early, late)]

@@ -118,5 +118,5 @@ def test_the_parts_before_and_after_are_said_in_a_line_each() -> None:
         "Before that: no change since the calibration.",
         "From then on, without A3: no change since the calibration.",
     )
-    assert parts_in_words(replace(sound(), faults=(STUCK,)))[1] == "From then on: too short to be judged."
+    assert parts_in_words(replace(sound(), faults=(STUCK,)))[1] == "From then on: too little to be judged."
     assert parts_in_words(sound()) == ()
