@@ -150,13 +150,32 @@ def select(ledger: Ledger, motion: str, norm: float | None = None, rate: float |
     return BlockSelection(chosen, grouped(chosen, still[used]), still[used], rest[used], saturated, left_out, total)
 
 
+def unclipped(ledger: Ledger, blocks: Blocks) -> Mask:
+    """(B,) bool: no channel stood at its extreme, where that is the end of a range or rare enough to be one.
+
+    Blocks are the ledger's, joined or not. A few clipped samples pass for none by the rule of `Rails`, and move a mean.
+    """
+    clean = np.ones(len(blocks), dtype=bool)
+    for sign, extreme, end in ((1.0, blocks.highest, ledger.ends[0]), (-1.0, blocks.lowest, ledger.ends[1])):
+        touched = sign * extreme >= end.value[0]
+        often = end.count[0] > 1
+        rare = touched.mean(axis=0) < RARE
+        clean &= ~(touched & (~np.isnan(end.limit) | (often & rare))).any(axis=1)
+    return clean
+
+
+RARE = 0.05
+"""Share of the blocks in which a channel may stand at its extreme for it to pass for the end of a range."""
+
+
 def at_rest(blocks: Blocks, clean: Mask) -> Mask:
     """(B,) bool: as quiet as the quietest, if those are quiet: nothing but noise from one sample to the next."""
-    floor = np.quantile(blocks.motion[clean], FLOOR)
-    quietest = clean & (blocks.motion <= floor)
-    if floor > RESTLESS * np.median(blocks.jitter[quietest]):
+    motion = blocks.motion.mean(axis=1)
+    floor = np.quantile(motion[clean], FLOOR)
+    quietest = clean & (motion <= floor)
+    if floor > RESTLESS * np.median(blocks.jitter[quietest].mean(axis=1)):
         return np.zeros(len(blocks), dtype=bool)
-    return np.asarray(blocks.motion <= MOVING * floor)
+    return np.asarray(motion <= MOVING * floor)
 
 
 def wanted(blocks: Blocks, ledger: Ledger, still: Mask, clean: Mask, motion: str) -> Mask:

@@ -1,6 +1,7 @@
 """A recording against its reference: the whole of it at once, or as it comes."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -8,12 +9,14 @@ from estimator.applied_vector import gravity
 from estimator.errors import Problem, ScheduleError
 from estimator.message import joined, say
 from estimator.parity.blocks import ANY, AUTO, MOTIONS, BlockSelection, select
+from estimator.parity.course import Course
 from estimator.parity.freed import freed
 from estimator.parity.hypotheses import ParityEvidence
 from estimator.parity.ledger import BLOCK, Ledger
 from estimator.parity.motion import gyros_of
 from estimator.parity.nuisance import nuisance_of
-from estimator.parity.reference import reference_of
+from estimator.parity.onset import Looked, faults_of
+from estimator.parity.reference import FEWEST, reference_of
 from estimator.parity.regression import ParityChange, regress
 from estimator.parity.results import ParityResult
 from estimator.results import Calibration
@@ -87,16 +90,60 @@ class ParityAccumulator:
             raise ValueError(
                 say("motion is {motion}; must be one of {motions}", motion=repr(motion), motions=joined(", ", MOTIONS))
             )
-        selection = select(self.ledger, motion, self._norm, self._rate)
+        looked = faults_of(self.ledger, self._norm, self._rate)
+        sound = [k for k in range(len(self.reference.names)) if k not in looked.silent]
+        parts = [self._part(ledger, motion, false_alarm) for ledger in self._parts(looked, sound)]
+        before, after = parts if looked.faults else (None, None)
+        top = before or after or self._compared(self.ledger, motion, false_alarm)
+        return replace(top, faults=looked.faults, before=before, after=after, **self._course(looked.course))
+
+    def _parts(self, looked: Looked, sound: list[int]) -> Iterator[Ledger]:
+        """The part before the first fault and that after the last has begun or ended.
+
+        A sensor that says nothing takes no part in what follows its failure, if enough remain.
+        """
+        blocks, length = self.ledger.blocks(), self.ledger.length / (self._rate or 1.0)
+        everyone = np.arange(len(self.reference.names))
+        living = np.array(sound) if len(sound) >= FEWEST else everyone
+        begun = [fault.since - fault.since_sigma for fault in looked.faults]
+        over = [fault.since + fault.since_sigma if fault.until is None else fault.until for fault in looked.faults]
+        if looked.faults:
+            yield self.ledger.part((blocks.first + 1) * length <= min(begun), everyone)
+            yield self.ledger.part(blocks.first * length >= max(over), living)
+
+    def _part(self, ledger: Ledger, motion: str, false_alarm: float) -> ParityResult | None:
+        """What a part of the recording says; None where it is too short to say anything."""
+        try:
+            return self._compared(ledger, motion, false_alarm)
+        except ScheduleError:
+            return None
+
+    def _compared(self, ledger: Ledger, motion: str, false_alarm: float) -> ParityResult:
+        """Whether a parameter has changed since the calibration."""
+        selection = select(ledger, motion, self._norm, self._rate)
         allowed = nuisance_of(
-            selection.blocks, selection.rest, self.reference, self._norm, self._rate, arms=motion != ANY
+            selection.blocks, selection.rest, ledger.reference, self._norm, self._rate, arms=motion != ANY
         )
-        still = ParityEvidence(regress(selection, self.reference, self._norm))
-        change = freed(selection, self.reference, self._norm, allowed)
-        return self._judged(selection, change, ParityEvidence(change), still, false_alarm)
+        still = ParityEvidence(regress(selection, ledger.reference, self._norm))
+        change = freed(selection, ledger.reference, self._norm, allowed)
+        return self._judged(ledger, selection, change, ParityEvidence(change), still, false_alarm)
+
+    def _course(self, course: Course | None) -> dict[str, Array]:
+        """The fine course of every sensor, for people to look at."""
+        if course is None:
+            return {}
+        V, rate = course.reference.parity, self._rate or 1.0
+        middle = course.start + (course.blocks.first + 0.5) * course.span
+        sigma = np.linalg.norm(V @ np.linalg.inv(course.white), axis=1)
+        return {
+            "course_fine": course.blocks.mean @ V @ V.T,
+            "course_fine_time": middle * self.ledger.length / rate,
+            "course_fine_sigma": sigma,
+        }
 
     def _judged(
         self,
+        ledger: Ledger,
         selection: BlockSelection,
         change: ParityChange,
         evidence: ParityEvidence,
@@ -110,20 +157,20 @@ class ParityAccumulator:
         named = {h.sensor for h in candidates}
         explained = not detected or evidence.explained(candidates[0])
         isolated = candidates if explained and len(named) == 1 else []
-        m = len(self.reference.names)
+        names = ledger.reference.names
         fitted = change.excited @ change.theta
         spread = np.kron(change.excited, np.eye(change.theta.shape[1]))
         return ParityResult(
             unit=self.unit,
             kind=self.reference.kind,
-            sensors=tuple(evidence.sensor(i, false_alarm, isolated) for i in range(m)),
+            sensors=tuple(evidence.sensor(i, false_alarm, isolated) for i in range(len(names))),
             chi2=evidence.chi2,
             dof=len(evidence.seen),
             p_value=evidence.p_value(evidence.chi2, len(evidence.seen)),
             detected=detected,
             false_alarm=false_alarm,
             candidates=tuple(map(evidence.candidate, candidates)),
-            isolated=self.reference.names[isolated[0].sensor] if isolated else None,
+            isolated=names[isolated[0].sensor] if isolated else None,
             explained=explained,
             complete=change.complete,
             constant=fitted[0],
@@ -137,30 +184,37 @@ class ParityAccumulator:
             groups=selection.groups,
             left_out=selection.left_out,
             saturated=selection.saturated,
-            clipped=self._clipped(selection.saturated),
+            clipped=clipped(ledger, selection.saturated),
             moving=moving,
             chi2_unmoved=still.chi2,
             p_value_unmoved=still.p_value(still.chi2, len(still.seen)),
             suspects=tuple(map(still.candidate, still.candidates())) if moving else (),
             motion_share=evidence.share(change.motion),
-            block_seconds=None if self._rate is None else self.ledger.length / self._rate,
-            duration=None if self._rate is None else self._samples / self._rate,
+            block_seconds=None if self._rate is None else ledger.length / self._rate,
+            duration=self._duration(ledger),
             course=change.course,
             course_sigma=change.course_sigma,
             course_time=self._middles(selection),
         )
 
-    def _clipped(self, names: tuple[str, ...]) -> dict[str, float]:
-        """Share of the samples in which the channels stood at an end of their range."""
-        top, bottom = self.ledger.ends
-        share = (top.clipped + bottom.clipped) / max(self.ledger.samples, 1)
-        return {name: float(share[self.reference.names.index(name)]) for name in names}
+    def _duration(self, ledger: Ledger) -> float | None:
+        """s of a part, or of the whole with what its last block lacks."""
+        if self._rate is None:
+            return None
+        return (self._samples if ledger is self.ledger else float(ledger.blocks().samples.sum())) / self._rate
 
     def _middles(self, selection: BlockSelection) -> Array:
         """(groups,) middle of each group, s since the start, or a number of blocks where no rate is known."""
         share = np.bincount(selection.group)
         middle = np.bincount(selection.group, weights=selection.blocks.first + 0.5) / share
         return np.asarray(middle if self._rate is None else middle * self.ledger.length / self._rate)
+
+
+def clipped(ledger: Ledger, names: tuple[str, ...]) -> dict[str, float]:
+    """Share of the samples in which the channels stood at an end of their range."""
+    top, bottom = ledger.ends
+    share = (top.clipped + bottom.clipped) / max(ledger.samples, 1)
+    return {name: float(share[ledger.reference.names.index(name)]) for name in names}
 
 
 def parity_check(

@@ -3,8 +3,12 @@
 A block begins as `BLOCK` seconds of samples. When there are too many, neighbours are joined two by two and the blocks
 are twice as long from then on. A block keeps the mean of each sensor's input, how much the inputs moved within it, the
 extreme readings, by which a channel that ran into its end is known, and what lever arms, delays and vibration do to a
-mean: the moments of the angular rate, the change of the vector from end to end, its covariance.
+mean: the moments of the angular rate, the change of the vector from end to end, its covariance. For the course in time
+it keeps by sensor how its halves differ, how often a reading stood still, how parity flutters from sample to sample,
+and how it goes with the change of what the others feel, which is what a delay does.
 """
+
+import copy
 
 from dataclasses import dataclass, replace
 
@@ -38,10 +42,20 @@ class Blocks:
     """(B,) number in each."""
     mean: Array
     """(B, m) of the inputs, m/s² (rad/s)."""
+    halves: Array
+    """(B, m) half of what the mean of the block's second half differs from that of its first, m/s² (rad/s)."""
     motion: Array
-    """(B,) variance of the inputs within the block, averaged over the sensors, (m/s²)² ((rad/s)²); 0 for averages."""
+    """(B, m) variance of the inputs within the block, (m/s²)² ((rad/s)²); 0 for averages."""
     jitter: Array
-    """(B,) the same from the differences of neighbouring samples: noise shows in it, slow motion does not."""
+    """(B, m) the same from the differences of neighbouring samples: noise shows in it, slow motion does not."""
+    flutter: Array
+    """(B, m) the same of V·p: motion shows little in it."""
+    standing: Array
+    """(B, m) share of the samples that read what the one before reads."""
+    late: Array
+    """(B, m) mean product of V·p and the change of what the others say of the sensor, (m/s²)² ((rad/s)²) a sample."""
+    change: Array
+    """(B, m) mean square of that change, (m/s²)² ((rad/s)²) a sample²."""
     lowest: Array
     """(B, m) smallest reading, reading units."""
     highest: Array
@@ -66,6 +80,10 @@ class Blocks:
         """Some of the blocks: by number (n,), or by bool (B,)."""
         return Blocks(*(column[chosen] for column in vars(self).values()))
 
+    def of(self, sensors: Array) -> "Blocks":
+        """Some of the sensors, by number (n,)."""
+        return replace(self, **{name: getattr(self, name)[:, sensors] for name in BY_SENSOR})
+
     def joined(self) -> "Blocks":
         """Neighbours two by two; the number of blocks must be even."""
         left, right = (vars(self.at(np.arange(k, len(self), 2))) for k in (0, 1))
@@ -81,8 +99,13 @@ class Blocks:
             first=left["first"] // 2,
             samples=samples,
             mean=mean("mean"),
+            halves=0.5 * (right["mean"] - left["mean"]),
             motion=np.maximum(left["motion"], right["motion"]),
             jitter=np.maximum(left["jitter"], right["jitter"]),
+            flutter=mean("flutter"),
+            standing=mean("standing"),
+            late=mean("late"),
+            change=mean("change"),
             lowest=np.minimum(left["lowest"], right["lowest"]),
             highest=np.maximum(left["highest"], right["highest"]),
             parity_variance=mean("parity_variance"),
@@ -94,10 +117,21 @@ class Blocks:
         )
 
 
+BY_SENSOR = ("mean", "halves", "motion", "jitter", "flutter", "standing", "late", "change", "lowest", "highest")
+"""Columns of blocks that hold a number for every sensor."""
+
+
 def pairs(vectors: Array) -> Array:
     """(..., 6) products xx, yy, zz, xy, xz, yz of vectors (..., 3), in their unit squared."""
     x, y, z = np.moveaxis(vectors, -1, 0)
     return np.stack([x * x, y * y, z * z, x * y, x * z, y * z], axis=-1)
+
+
+def empty_blocks(m: int, count: int) -> Blocks:
+    """Blocks of m sensors that hold zeros; one after the other, of one sample each."""
+    width = dict.fromkeys(BY_SENSOR, m) | {"gain": 3, "shake": 6, "spin": 3, "spin_gain": 3, "spin_square": 6}
+    zeros = {name: np.zeros((count, n)) for name, n in width.items()}
+    return Blocks(first=np.arange(count), samples=np.ones(count), parity_variance=np.zeros(count), **zeros)
 
 
 class Rails:
@@ -128,6 +162,12 @@ class Rails:
             self.value[place], self.count[place] = np.where(larger, value, stored), np.where(larger, count, times)
             value, count = np.where(larger, stored, value), np.where(larger, times, count)
 
+    def of(self, channels: Array) -> "Rails":
+        """Some of the channels, by number (n,)."""
+        some = Rails(self.sign, len(channels))
+        some.value, some.count = self.value[:, channels], self.count[:, channels]
+        return some
+
     @property
     def limit(self) -> Array:
         """(m,) the reading at which a channel is cut off, reading units; NaN where none is seen."""
@@ -155,6 +195,8 @@ class Ledger:
         self._count = 0
         self._before: tuple[Array, Array] | None = None
         self.samples = 0
+        self.quantum = np.full(len(reference.names), np.inf)
+        """(m,) smallest change of a reading, reading units."""
         self.ends = (Rails(1.0, len(reference.names)), Rails(-1.0, len(reference.names)))
 
     def add(self, readings: Array) -> None:
@@ -183,13 +225,24 @@ class Ledger:
         rate = rate.reshape(len(chunks), length, -1)
         gain, spin_gain = self._gains(n, rate)
         chunked = u.reshape(len(chunks), length, -1)
+        steps = np.abs(np.diff(chunked, axis=1))
+        if length > 1:
+            self.quantum = np.minimum(self.quantum, np.where(steps > 0, steps, np.inf).min(axis=(0, 1)))
+        shown = p @ self.reference.parity.T
+        others = np.diff(self.reference.others(inputs).reshape(a.shape), axis=1)
+        between = max(length - 1, 1)
         self._kept.append(
             Blocks(
                 first=self._count + np.arange(len(chunks)),
                 samples=np.full(len(chunks), float(length)),
                 mean=a.mean(axis=1),
-                motion=a.var(axis=1).mean(axis=1),
-                jitter=0.5 * (np.diff(a, axis=1) ** 2).sum(axis=(1, 2)) / (max(length - 1, 1) * a.shape[2]),
+                halves=0.5 * (a[:, -(length // 2) :].mean(axis=1) - a[:, : (length + 1) // 2].mean(axis=1)),
+                motion=a.var(axis=1),
+                jitter=0.5 * (np.diff(a, axis=1) ** 2).sum(axis=1) / between,
+                flutter=0.5 * (np.diff(shown, axis=1) ** 2).sum(axis=1) / between,
+                standing=(steps == 0).sum(axis=1) / between,
+                late=0.5 * ((shown[:, 1:] + shown[:, :-1]) * others).sum(axis=1) / between,
+                change=(others**2).sum(axis=1) / between,
                 lowest=chunked.min(axis=1),
                 highest=chunked.max(axis=1),
                 parity_variance=p.var(axis=1).mean(axis=1),
@@ -232,15 +285,19 @@ class Ledger:
         self._kept.append(replace(remainder, first=np.array([self._count])))
         self._count += 1
 
+    def part(self, chosen: Array, sensors: Array) -> "Ledger":
+        """Some of the blocks (B,) bool, and some of the sensors, by number (n,); nothing is added to it."""
+        part = copy.copy(self)
+        part._kept = [self.blocks().at(chosen).of(sensors)]
+        part.reference = self.reference.of(sensors)
+        part.ends = (self.ends[0].of(sensors), self.ends[1].of(sensors))
+        part.quantum = self.quantum[sensors]
+        return part
+
     def blocks(self) -> Blocks:
         """All blocks so far."""
         if not self._kept:
-            m = len(self.reference.names)
-            empty, none, three = np.empty((0, m)), np.empty(0), np.empty((0, 3))
-            return Blocks(
-                np.empty(0, dtype=np.int64), none, empty, none, none, empty, empty,
-                none, three, np.empty((0, 6)), three, three, np.empty((0, 6)),
-            )  # fmt: skip
+            return empty_blocks(len(self.reference.names), 0)
         parts = [vars(blocks) for blocks in self._kept]
         joined = Blocks(**{name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
         self._kept = [joined]

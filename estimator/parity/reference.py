@@ -1,7 +1,7 @@
 """What a recording is compared with: the calibrated sensors, their parity space, how a change of one shows there."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,8 @@ from estimator.session import ACCELEROMETER, Array, Sensor
 
 FEWEST = 4
 """Sensors: three measure the vector, one more checks them."""
+LEAST_VISIBLE = 1e-6
+"""Share of a sensor that shows in parity; of less the others say nothing of it."""
 QUADRATIC = ELEMENTS.index("quadratic")
 NEEDED = ("scale", "bias", "axis")
 """What the reference must know of a sensor that takes part."""
@@ -55,11 +57,36 @@ class ParityReference:
         """(m,) relative share of a sensor's change, in energy, that lies in parity space: 1 − eᵢᵀ(HᵀH)⁻¹eᵢ."""
         return np.asarray((self.parity**2).sum(axis=1))
 
+    def of(self, sensors: Array) -> "ParityReference":
+        """Some of the sensors, by number (n,)."""
+        own = (5 * np.asarray(sensors)[:, None] + np.arange(5)).ravel()
+        some = {name: getattr(self, name)[sensors] for name in BY_SENSOR}
+        return replace(
+            self,
+            names=tuple(self.names[k] for k in sensors),
+            covariance=self.covariance[np.ix_(own, own)],
+            position=None if self.position is None else self.position[sensors],
+            parity=null_space(some["axes"].T),
+            **some,
+        )
+
     def inputs(self, readings: Array) -> Array:
         """(R, m) what the sensors say was applied, m/s² (rad/s): u/K − b − c·a², from readings (R, n) of all n sensors
         of the recording, reading units."""
-        w = (readings[:, self.column] - self.offset) / self.scale - self.bias
+        return self.felt(readings[:, self.column])
+
+    def felt(self, readings: Array) -> Array:
+        """(R, m) the same from the readings (R, m) of these sensors alone."""
+        w = (readings - self.offset) / self.scale - self.bias
         return 2.0 * w / (1.0 + np.sqrt(np.maximum(1.0 + 4.0 * self.quadratic * w, 0.0)))
+
+    def readings(self, inputs: Array) -> Array:
+        """(R, m) reading units, what the sensors read at inputs (R, m), m/s² (rad/s)."""
+        return np.asarray(self.scale * (inputs + self.bias + self.quadratic * inputs**2) + self.offset)
+
+    def others(self, inputs: Array) -> Array:
+        """(R, m) what the others say that each sensor feels, m/s² (rad/s), from inputs (R, m)."""
+        return np.asarray(inputs - inputs @ self.parity @ self.parity.T / np.maximum(self.visible, LEAST_VISIBLE))
 
     def vector(self, inputs: Array) -> Array:
         """(R, 3) the vector that fits the inputs (R, m) best, m/s² (rad/s)."""
@@ -77,6 +104,10 @@ class ParityReference:
         shown[:, 0, 1] = 1.0
         shown[:, 1:, 3:] = norm * self.tangents
         return shown
+
+
+BY_SENSOR = ("column", "scale", "bias", "quadratic", "offset", "axes", "tangents", "repeatability")
+"""Arrays of a reference whose first axis is the sensors."""
 
 
 def reference_of(sensors: Sequence[Sensor], calibration: Calibration, kind: str) -> ParityReference:

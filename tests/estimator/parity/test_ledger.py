@@ -1,12 +1,13 @@
 """A recording as means of blocks in bounded memory, and the ends of each channel's range."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 
 from estimator.parity.blocks import BlockSelection, grouped, select
-from estimator.parity.ledger import Blocks, Ledger, Rails
+from estimator.parity.ledger import Blocks, Ledger, Rails, empty_blocks
 from estimator.parity.reference import ParityReference, reference_of
 from estimator.session import ACCELEROMETER, Array
 from tests.estimator.calibration.free_sessions import session
@@ -32,8 +33,8 @@ def test_a_block_holds_mean_scatter_and_extremes_of_its_samples() -> None:
     blocks = ledger.blocks()
     parts = inputs.reshape(2, 4, 6)
     assert blocks.mean == pytest.approx(parts.mean(axis=1))
-    assert blocks.motion == pytest.approx(parts.var(axis=1).mean(axis=1))
-    assert blocks.jitter == pytest.approx((np.diff(parts, axis=1) ** 2).mean(axis=(1, 2)) / 2)
+    assert blocks.motion == pytest.approx(parts.var(axis=1))
+    assert blocks.jitter == pytest.approx((np.diff(parts, axis=1) ** 2).mean(axis=1) / 2)
 
 
 def test_neighbours_are_joined_when_there_are_too_many() -> None:
@@ -87,9 +88,7 @@ def test_counts_that_thin_out_gently_are_no_end() -> None:
 
 def placed(first: list[int]) -> Blocks:
     """Blocks at these places; what grouping does not read is empty."""
-    n, none = len(first), np.zeros(len(first))
-    six, three = np.zeros((n, 6)), np.zeros((n, 3))
-    return Blocks(np.array(first), np.ones(n), six, none, none, six, six, none, three, six, three, three, six)
+    return replace(empty_blocks(6, len(first)), first=np.array(first))
 
 
 def lengths(first: list[int], still: list[bool]) -> list[int]:

@@ -1,0 +1,207 @@
+"""The course of parity in time, made ready to be looked through: block by block, whitened, sensor by sensor.
+
+A fault of sensor i moves p along V[i] and nowhere else; what lies across says how noisy and how moved the rest of the
+recording is, which no fault of that sensor touches. So the covariance of a sensor's course (`scan`) comes from across
+wherever there is an across (five sensors or more), and from the sounder part of the course itself.
+
+What motion does to sound sensors is in that covariance: `nuisance` has lever arms, delays and shifts by vibration; the
+body bends with load (`SLOPE`), and sensors drift smoothly while they warm (`DRIFT`).
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from scipy.ndimage import maximum_filter1d, median_filter
+from scipy.special import chdtri
+
+from estimator.arrays import eigh, unit
+from estimator.parity.blocks import at_rest, resting, unclipped
+from estimator.parity.ledger import Blocks, Ledger, pairs
+from estimator.parity.nuisance import SIZE, UNSEEN_RATE, ParityNuisance, nuisance_of
+from estimator.parity.reference import ParityReference
+from estimator.parity.scan import MEMORIES, SOUND, Scan, block_variance, colour_of, remembered, scan_of
+from estimator.session import Array
+
+MOST = 600
+"""Blocks looked through at most: all pairs of onset and end are tried. A longer recording's are joined two by two."""
+SLOPE = 0.02
+"""rad or relative; by which a sensor leans or stretches with load, or has changed since its calibration."""
+FREE = 1e3
+"""Noise of a block; size of the constant and of a smooth drift over the recording, which are not asked about here."""
+DRIFT = (1, 2, 3)
+"""Powers of time of a drift while warming."""
+OWN = 3.0
+"""Times, in sigma, that one sensor may be noisier than the others before it is suspected."""
+FAINT = 0.25
+"""Of a block's noise, in variance; as much of longer memory any sensor may have."""
+ACTIVE = 1 / 3
+"""Part of the blocks in which the vector changes most."""
+BESIDE = 7
+"""Blocks whose median a swing leaves: longer than a swing, shorter than what is asked about."""
+MOST_SWINGS = 0.9
+"""Part of them that must not stand out."""
+TURNS = 4
+"""Times that covariance and weights are taken in turns; they settle in three."""
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """Parity in T blocks, of m sensors, d = m − 3."""
+
+    reference: ParityReference
+    blocks: Blocks
+    start: int
+    """Blocks of the ledger before the first of these, and ``span`` of them that make one."""
+    span: int
+    total: int
+    """Blocks, with those left out."""
+    white: Array
+    """(d, d) W, 1/(m/s²) (1/(rad/s)): p·W has noise of one in a typical block."""
+    p: Array
+    """(T, d) parity without what stated positions feel, whitened."""
+    halves: Array
+    """(T, d) the same of half the difference of the halves."""
+    signals: Array
+    """(T, K) what motion, load and time do, and ``sizes`` (K, d, d), the covariance of its size in whitened parity."""
+    sizes: Array
+
+    @cached_property
+    def directions(self) -> Array:
+        """(m, d) whitened parity of a unit change of each sensor."""
+        return np.asarray(self.reference.parity @ self.white)
+
+    @cached_property
+    def felt(self) -> Array:
+        """(T, m) what the others say that each sensor feels, m/s² (rad/s)."""
+        return self.reference.others(self.blocks.mean)
+
+    def along(self, sensor: int) -> tuple[Array, Array, float]:
+        """Unit direction (d,) of a sensor, basis (d, d − 1) of what lies across, and the length of the direction."""
+        length = float(np.linalg.norm(self.directions[sensor]))
+        u = self.directions[sensor] / max(length, np.finfo(float).tiny)
+        return u, np.linalg.svd(u[None])[2][1:].T, length
+
+    def fixed(self, basis: Array) -> Array:
+        """(T, T) X·Λ·Xᵀ, the mean over the directions (d, n) of a basis."""
+        size = np.einsum("dn,kde,en->k", basis, self.sizes, basis) / basis.shape[1]
+        return np.asarray((self.signals * size) @ self.signals.T)
+
+    @cached_property
+    def activity(self) -> Array:
+        """(T,) how much the vector changes about a block, m/s² (rad/s)."""
+        n = self.reference.vector(self.blocks.mean)
+        around = np.linalg.norm(np.diff(np.pad(n, ((1, 1), (0, 0)), mode="edge"), axis=0), axis=1)
+        return np.asarray(maximum_filter1d(np.maximum(around[1:], around[:-1]), 3))
+
+    def scan(self, sensor: int, *, noisier: Array | float = 0.0) -> Scan:
+        """The course along one sensor; ``noisier`` (T,) adds to the variance of a block, whitened."""
+        u, across, _ = self.along(sensor)
+        x, h, fixed = self.p @ u, self.halves @ u, self.fixed(u[:, None])
+        basis = across if across.shape[1] else u[:, None]
+        variance = block_variance(self.halves @ basis)
+        own = float(np.quantile(h**2 / variance, SOUND) / chdtri(1, 1 - SOUND))
+        variance = variance * np.clip(own, 1.0, OWN**2)
+        others = stirring(self.p @ basis, variance, self.activity)
+        stirred = max(others, min(stirring(x[:, None], variance, self.activity), OWN**2 * others))
+        swung = stirred * np.outer(self.activity, self.activity) * remembered(len(x), MEMORIES[0])
+        colour = colour_of(self.p @ basis, variance, self.fixed(basis) + swung, 0.5)
+        alone = colour_of(x[:, None], variance, fixed + swung, SOUND, wandering=True)
+        most = OWN**2 * colour.sum() + FAINT * float(np.median(variance))
+        colour = np.maximum(colour, alone * min(1.0, most / max(alone.sum(), most)))
+        return scan_of(x, variance + noisier, colour, fixed + swung)
+
+
+def stirring(courses: Array, variance: Array, activity: Array) -> float:
+    """κ²: how far courses (T, n) leave their neighbours' median while the vector changes, by the square of its change
+    (T,), beyond the noise (T,) of the blocks.
+
+    A body that begins to turn swings its sensors in ways that the vector does not show; how far is learned here, from
+    what most changes do.
+    """
+    active = activity >= np.quantile(activity, 1 - ACTIVE)
+    beside = courses - median_filter(courses, size=(BESIDE, 1), mode="nearest")
+    excess = (beside**2 - variance[:, None])[active] / np.maximum(activity[active], np.finfo(float).tiny)[:, None] ** 2
+    return max(float(np.quantile(excess, MOST_SWINGS) / chdtri(1, 1 - MOST_SWINGS)), 0.0)
+
+
+def course_of(ledger: Ledger, norm: float | None, rate: float) -> Course | None:
+    """Of a recording; None where too little of it can be used.
+
+    Parameters
+    ----------
+    norm : g, m/s²; None for gyros.
+    rate : of the samples, Hz.
+    """
+    blocks, reference, start, span = ledger.blocks(), ledger.reference, 0, 1
+    while len(blocks) > MOST:
+        odd = len(blocks) % 2
+        start, span = start + odd * span, 2 * span
+        later = blocks.at(np.arange(odd, len(blocks)))
+        blocks = replace(later, first=later.first - later.first[0]).joined()
+    total = len(blocks)
+    clean = unclipped(ledger, blocks)
+    if clean.sum() < max(FEWEST, total / 2):
+        return None
+    rest = clean & resting(blocks, at_rest(blocks, clean), reference, norm, rate)
+    blocks, rest = blocks.at(clean), rest[clean]
+    nuisance = nuisance_of(blocks, rest, reference, norm, rate)
+    p, halves = (blocks.mean - nuisance.known) @ reference.parity, blocks.halves @ reference.parity
+    white = whitening(halves)
+    signals, sizes = known_motion(blocks, nuisance, reference, white, norm, rate)
+    return Course(reference, blocks, start, span, total, white, p @ white, halves @ white, signals, sizes)
+
+
+FEWEST = 24
+"""Blocks; with fewer the noise is not known well enough to look for onsets."""
+
+
+def whitening(halves: Array) -> Array:
+    """(d, d) C^(−1/2) of the noise of a block's mean, from the differences (T, d) of its halves, m/s² (rad/s).
+
+    Blocks beyond the 95 % quantile take no part; how noisy a block is, is taken out first.
+    """
+    d = halves.shape[1]
+    floor = 1e-6 * float((halves**2).mean()) + np.finfo(float).tiny
+    C = np.diag(np.median(halves**2, axis=0) / chdtri(1, 0.5) + floor)
+    for _ in range(TURNS):
+        root = np.linalg.cholesky(C)
+        h = np.linalg.solve(root, halves.T).T
+        variance = block_variance(h)
+        square = (h**2).sum(axis=1) / variance
+        kept = square <= chdtri(d, 0.05)
+        scaled = halves[kept] / np.sqrt(variance[kept])[:, None]
+        C = scaled.T @ scaled / max(int(kept.sum()), 1) + floor * np.eye(d)
+    values, vectors = eigh(C)
+    return np.asarray((vectors / np.sqrt(values)) @ vectors.T)
+
+
+def known_motion(
+    blocks: Blocks, nuisance: ParityNuisance, reference: ParityReference, white: Array, norm: float | None, rate: float
+) -> tuple[Array, Array]:
+    """Signals (T, K) and the covariances (K, d, d) of their sizes: time, load, and every unknown of the nuisance."""
+    seen = reference.parity @ white
+    n = reference.vector(blocks.mean)
+    size = norm or float(np.sqrt((n**2).sum(axis=1).mean()))
+    t = 2.0 * (blocks.first - blocks.first[0]) / max(int(np.ptp(blocks.first)), 1) - 1.0
+    drift = np.column_stack([np.ones(len(t)), *(t**k for k in DRIFT)])
+    d = white.shape[0]
+    signals = [drift, n / size, pairs(n / size)]
+    free = np.tile(FREE**2 * np.eye(d), (drift.shape[1], 1, 1))
+    sizes = [free, np.tile((SLOPE * size) ** 2 * seen.T @ seen, (3, 1, 1))]
+    sizes.append(np.tile((SIZE * UNSEEN_RATE**2) ** 2 * seen.T @ seen, (6, 1, 1)))
+    if norm is not None and not blocks.spin.shape[1]:
+        signals.append(swing(blocks, reference, rate))
+        sizes.append(np.tile(SIZE**2 * seen.T @ seen, (3, 1, 1)))
+    moved = nuisance.signals @ nuisance.coefficient.T
+    sizes.append(np.einsum("kd,ke->kde", seen[nuisance.sensor], seen[nuisance.sensor]))
+    return np.hstack([*signals, moved]), np.concatenate(sizes)
+
+
+def swing(blocks: Blocks, reference: ParityReference, rate: float) -> Array:
+    """(T, 3) second derivative of the direction of the specific force, 1/s²: as fast the block swings, and a sensor at
+    r feels it as the acceleration ω̇ × r."""
+    toward = unit(reference.vector(blocks.mean))
+    second = np.diff(toward, 2, axis=0, prepend=toward[:1], append=toward[-1:])
+    return np.asarray(second * (rate / blocks.samples[:, None]) ** 2)

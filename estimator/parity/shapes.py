@@ -1,0 +1,115 @@
+"""How a sensor fails from one moment on: the shapes of its course, and which one it is.
+
+The onset of every kind is tried at every quarter of a block, and so dated: its error is that of the likelihood over the
+onsets. One that comes and goes is found by turning stretches on and off, each while that explains the course better.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from estimator.parity.course import Course
+from estimator.parity.results import DELAY, GAIN, INTERMITTENT, RAMP, STEP
+from estimator.parity.scan import Scan
+from estimator.session import Array
+
+PARTS = 4
+"""Of a block, at which an onset is tried."""
+SIMPLER = 6.0
+"""z² by which a kind must explain the course better than a plain step: odds of twenty."""
+TOGGLE = 25.0
+"""z² that a return, or a relapse, must explain: one of all pairs of moments by chance in a thousand recordings."""
+TOGGLES = 60
+"""Stretches at most."""
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """The best of one kind."""
+
+    kind: str
+    square: float
+    """z²"""
+    since: float
+    """Blocks of the course, and one sigma of it."""
+    since_sigma: float
+    until: float | None
+    shape: Array
+    """(T,)"""
+    toggles: int = 0
+
+
+def entered(course: Course, onsets: Array) -> Array:
+    """(T, n) share of every block that lies after the onsets (n,), blocks."""
+    return np.clip(course.blocks.first[:, None] + 1.0 - onsets, 0.0, 1.0)
+
+
+def onsets(course: Course) -> Array:
+    """(n,) moments that are tried, blocks: never the first block, before which nothing would be sound."""
+    return np.arange(PARTS, PARTS * course.total) / PARTS
+
+
+def best_onset(course: Course, scan: Scan, kind: str, factor: Array | None) -> Shape:
+    """Of a plain kind: a shift, its integral, or a shift of what the sensor feels (T,) times a size."""
+    tried = onsets(course)
+    if kind == RAMP:
+        shapes = 0.5 * entered(course, tried) ** 2 + np.maximum(course.blocks.first[:, None] - tried, 0.0)
+    else:
+        shapes = entered(course, tried) * (1.0 if factor is None else factor[:, None])
+    square = scan.ratios(shapes) ** 2
+    best = int(square.argmax())
+    weight = np.exp(0.5 * (square - square[best]))
+    mean = float(weight @ tried / weight.sum())
+    spread = float(np.sqrt(weight @ (tried - mean) ** 2 / weight.sum()))
+    sigma = float(np.hypot(spread, 1.0 / (PARTS * np.sqrt(3))))
+    return Shape(kind, float(square[best]), float(tried[best]), sigma, None, shapes[:, best])
+
+
+def coming_and_going(course: Course, scan: Scan, first: int, until: int) -> Shape:
+    """Stretches of one size, from one of them on."""
+    T = len(scan.white)
+    g = scan.whitened(np.tri(T))
+    N = np.zeros((T + 1, T + 1))
+    N[:T, :T] = g.T @ g
+    norm = np.diag(N)[:, None] + np.diag(N) - 2 * N
+    on = np.zeros(T, dtype=bool)
+    on[first:until] = True
+    toggles = 1 if until < T else 0
+    later = np.triu(np.ones((T + 1, T + 1), dtype=bool), 1)
+    for _ in range(TOGGLES):
+        size, _ = scan.size(on.astype(float))
+        left = scan.white - size * scan.whitened(on[:, None].astype(float))[:, 0]
+        c = np.append(g.T @ left, 0.0)
+        count = np.append(0, np.cumsum(on))
+        inside = count - count[:, None]
+        length = np.arange(T + 1) - np.arange(T + 1)[:, None]
+        sign = np.where(inside == 0, 1.0, np.where(inside == length, -1.0, 0.0))
+        gain = np.where(later & (sign != 0), 2 * sign * size * (c[:, None] - c) - size**2 * norm, -np.inf)
+        a, b = np.unravel_index(gain.argmax(), gain.shape)
+        if gain[a, b] < TOGGLE:
+            break
+        on[a:b] = ~on[a:b]
+        toggles += 1
+    on ^= on[0]
+    square = float(scan.ratios(on[:, None].astype(float))[0] ** 2)
+    where = np.flatnonzero(on)
+    begin, last = float(course.blocks.first[where[0]]), float(course.blocks.first[where[-1]] + 1)
+    end = None if where[-1] == T - 1 else last
+    return Shape(INTERMITTENT, square, begin, 0.5, end, on.astype(float), toggles)
+
+
+def shape_of(course: Course, scan: Scan, sensor: int, z: Array) -> Shape:
+    """The kind that explains a sensor's course best."""
+    n = course.reference.vector(course.blocks.mean)
+    felt = course.felt[:, sensor] + course.reference.bias[sensor]
+    late = -course.blocks.gain @ course.reference.axes[sensor] / course.blocks.samples
+    plain = best_onset(course, scan, STEP, None)
+    tried = [best_onset(course, scan, RAMP, None)]
+    if np.ptp(n @ course.reference.axes[sensor]) > 0:
+        tried += [best_onset(course, scan, GAIN, felt), best_onset(course, scan, DELAY, late)]
+    began = int(np.searchsorted(course.blocks.first, np.floor(plain.since)))
+    best = np.unravel_index(np.abs(z).argmax(), z.shape)
+    starts = ((began, len(scan.white)), (int(best[0]), int(best[1])))
+    tried += [s for s in (coming_and_going(course, scan, *start) for start in starts) if s.toggles]
+    best = max(tried, key=lambda s: s.square - TOGGLE * s.toggles)
+    return best if best.square - TOGGLE * best.toggles > plain.square + SIMPLER else plain

@@ -1,0 +1,160 @@
+"""Signs of a fault beside its mean: two sensors exchanged, noise that grows, answers that come late.
+
+exchanged  with the readings of two exchanged back, parity from some moment on is as quiet as before it. Compared with
+           the readings as they are by likelihood, and with any course of one sensor alone.
+noise      parity flutters from sample to sample with the noise of the sensors, and with vibration, by what the other
+           sensors feel of it. What is beyond that, in logarithms, steps up.
+delay      a sensor that answers τ late has in parity −τ times the change of what the others feel: the mean product of
+           both, over the mean square of the change, steps.
+"""
+
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from scipy.ndimage import median_filter
+from scipy.optimize import nnls
+from scipy.special import chdtri
+
+from estimator.parity.course import FREE, Course
+from estimator.parity.results import DELAY, NOISE
+from estimator.parity.scan import MEMORIES, NEAR, Scan, colour_of, remembered, scan_of
+from estimator.parity.shapes import Shape, best_onset
+from estimator.session import Array
+
+SURE = 60.0
+"""χ² by which exchanged readings must explain more: of all pairs and onsets one by chance in 10⁹ recordings."""
+LEFT = 0.2
+"""Share of the energy of parity that an exchange may leave at most, and that one sensor's course must leave more."""
+GROWN = 2.5
+"""Factor by which the variance must grow: motion of a new kind makes as much out of what is sound."""
+REGIME = 0.5
+"""Samples; by which a sensor seems later in one motion than in another, by lever arms and filters."""
+LATER = 2.0
+"""Samples that a delay must grow by."""
+FLOOR = 0.05
+"""Part of the blocks in which what the others feel changes least: by noise alone."""
+
+
+@dataclass(frozen=True, eq=False)
+class Exchange:
+    """Two sensors, by number, since when, blocks."""
+
+    pair: tuple[int, int]
+    since: float
+    square: float
+    """χ² that it explains."""
+
+
+def exchange_of(course: Course) -> Exchange | None:
+    """The likeliest pair, if one is likely."""
+    V, reference = course.reference.parity, course.reference
+    if V.shape[1] < 2:
+        return None
+    a = course.blocks.mean
+    u = reference.readings(a)
+    before = (course.p**2).sum(axis=1)
+    best: Exchange | None = None
+    for i, j in combinations(range(len(V)), 2):
+        swapped = u.copy()
+        swapped[:, [i, j]] = u[:, [j, i]]
+        moved = course.p + (reference.felt(swapped) - a) @ V @ course.white
+        after = (moved**2).sum(axis=1)
+        won = np.cumsum((before - after)[::-1])[::-1]
+        k = int(won.argmax())
+        if won[k] > max(SURE, best.square if best else 0.0) and _alone(course, before, after, k):
+            best = Exchange((i, j), float(course.blocks.first[k]) if k else 0.0, float(won[k]))
+    return best
+
+
+def _alone(course: Course, before: Array, after: Array, k: int) -> bool:
+    """Whether from block k on nothing else is as good: not the readings as they are, not a course of one sensor."""
+    if after[k:].sum() > LEFT * before[k:].sum():
+        return False
+    units = course.directions / np.linalg.norm(course.directions, axis=1, keepdims=True)
+    across = before[k:].sum() - ((course.p[k:] @ units.T) ** 2).sum(axis=0)
+    return bool(after[k:].sum() < LEFT * across.min())
+
+
+@dataclass(frozen=True, eq=False)
+class Sign:
+    """A course that steps, of one sensor, by number."""
+
+    sensor: int
+    shape: Shape
+    z: float
+    size: float
+    """noise: m/s² (rad/s), one sigma of a sample; delay: samples."""
+    sigma: float
+    noisier: Array
+    """(T,) variance that it adds to a block's mean, whitened."""
+
+
+def growth_of(course: Course) -> Sign | None:
+    """The sensor whose noise grows most surely; None where none does by `GROWN`."""
+    best: Sign | None = None
+    b, visible = course.blocks, course.reference.visible
+    for i in range(b.flutter.shape[1]):
+        power = b.flutter[:, i] / max(visible[i], np.finfo(float).tiny)
+        explained = _explained(power, b.change[:, i])
+        scan = _steps(np.log(np.maximum(power, 1e-6 * explained + np.finfo(float).tiny) / explained))
+        shape = best_onset(course, scan, NOISE, None)
+        size, sigma = scan.size(shape.shape)
+        z = float(np.sqrt(shape.square))
+        on = shape.shape > 0
+        added = float(np.median((power - explained * np.exp(_level(power, explained, ~on)))[on]))
+        if size < np.log(GROWN) or added <= 0 or (best is not None and added <= best.size):
+            continue
+        length = course.along(i)[2]
+        noisier = shape.shape * added / visible[i] * length**2 / b.samples
+        best = Sign(i, shape, z, added, sigma, noisier)
+    if best is None:
+        return None
+    grown = float(np.sqrt(best.size / visible[best.sensor]))
+    return Sign(best.sensor, best.shape, best.z, grown, 0.5 * grown * best.sigma, best.noisier)
+
+
+def _level(power: Array, explained: Array, sound: Array) -> float:
+    return float(np.median(np.log(np.maximum(power, 1e-300) / explained)[sound])) if sound.any() else 0.0
+
+
+def _explained(power: Array, change: Array) -> Array:
+    """(T,) power (T,) as a constant and a share of the change (T,), each by its own relative error."""
+    fitted = np.full(len(power), float(np.median(power)) + np.finfo(float).tiny)
+    for _ in range(3):
+        weight = 1.0 / np.maximum(fitted, power)
+        w, beta = nnls(np.column_stack([weight, change * weight]), power * weight)[0]
+        fitted = w + beta * change + 1e-9 * fitted
+    return np.asarray(fitted)
+
+
+def _steps(x: Array) -> Scan:
+    """A course (T,) of any unit with noise as its neighbours differ; its level is free."""
+    fixed = FREE**2 * np.ones((len(x), len(x)))
+    variance = _roughness(x)
+    return scan_of(x, variance, colour_of(x[:, None], variance, fixed, 0.5, wandering=True), fixed)
+
+
+def _roughness(x: Array) -> Array:
+    """(T,) variance from the difference of each point from its neighbours' mean, smoothed."""
+    square = np.convolve(x, [-0.5, 1.0, -0.5], mode="same")[1:-1] ** 2 / 1.5
+    square = np.pad(square, 1, mode="edge")
+    local = median_filter(square, size=min(NEAR, len(x)), mode="nearest") / chdtri(1, 0.5)
+    return np.asarray(np.maximum(local, 0.3 * np.median(square) / chdtri(1, 0.5)) + np.finfo(float).tiny)
+
+
+def lateness_of(course: Course) -> Sign | None:
+    """The sensor that most surely answers later from some moment on; None where none does by `LATER`."""
+    b, visible, best = course.blocks, course.reference.visible, None
+    for i in range(b.late.shape[1]):
+        g = -visible[i] * (b.change[:, i] - np.quantile(b.change[:, i], FLOOR))
+        noise = b.flutter[:, i] * b.change[:, i] / b.samples
+        rough = _roughness(b.late[:, i] / np.sqrt(noise + np.finfo(float).tiny))
+        fixed = np.outer(g, g) * (FREE + REGIME**2 * remembered(len(g), MEMORIES[1]))
+        scan = scan_of(b.late[:, i], noise * np.maximum(rough, 1.0), np.zeros(len(MEMORIES)), fixed)
+        shape = best_onset(course, scan, DELAY, g)
+        size, sigma = scan.size(shape.shape)
+        z = float(np.sqrt(shape.square))
+        if abs(size) > LATER and (best is None or z > best.z):
+            best = Sign(i, shape, z, size, sigma, np.zeros(len(g)))
+    return best
