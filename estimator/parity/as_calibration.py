@@ -11,22 +11,19 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from estimator.arrays import unit
-from estimator.parity.results import ParityResult, SensorParity, Sight
+from estimator.parity.results import NOTHING, ParityResult, SensorParity, Sight
 from estimator.results import Calibration, Estimate, Fit, Residuals, SensorCalibration
 from estimator.session import ACCELEROMETER, Array
 
 METHOD = "in-service/parity"
-NOTHING = Sight(None, None, None, None)
-"""Of a parameter that the recording tells nothing of."""
 
 
 def before_faults(result: ParityResult) -> ParityResult:
-    """The part before a sensor fails; nothing is seen of a sensor that it does not hold, nor where it is too short."""
+    """The part before a sensor fails; where that is too short, nothing is seen of any sensor."""
     if not result.faults:
         return result
-    seen = {} if result.before is None else {sensor.name: sensor for sensor in result.before.sensors}
-    blind = (replace(sensor, bias=NOTHING, scale=NOTHING, axis=NOTHING) for sensor in result.sensors)
-    return replace(result.before or result, sensors=tuple(seen.get(sensor.name, sensor) for sensor in blind))
+    blind = tuple(replace(sensor, bias=NOTHING, scale=NOTHING, axis=NOTHING) for sensor in result.sensors)
+    return result.before or replace(result, sensors=blind)
 
 
 def parity_calibration(result: ParityResult, reference: Calibration) -> Calibration:

@@ -32,6 +32,8 @@ DOES = {
     EXCHANGED: "{who} have been exchanged {when}",
     INTERMITTENT: "{who} has been off now and then{by} {when}",
 }
+EARLY = "the readings of {who} have come early{by} {when}"
+"""Of a delay below zero."""
 REPAIR = "replace or repair {who}"
 REPAIR_CHANNEL = "replace or repair {who}, and check its channel and its plug"
 REMEDIES = {
@@ -59,7 +61,7 @@ def _in_words(fault: CourseFault, result: ParityResult, started_at: str | None) 
     is_named = fault.sensor is not None or fault.kind == EXCHANGED
     who = joined(" and ", fault.suspects)
     does = say(
-        DOES[fault.kind],
+        EARLY if fault.kind == DELAY and (fault.size or 0.0) < 0 else DOES[fault.kind],
         who=who if is_named else say("one of the sensors {names}", names=joined(", ", fault.suspects)),
         by=_by(fault, result.kind) if fault.kind in SIZED else "",
         when=_when(fault, result, started_at),
@@ -67,7 +69,7 @@ def _in_words(fault: CourseFault, result: ParityResult, started_at: str | None) 
     unnamed = say("{what}; the redundancy is too small to say which", what=does)
     return ServiceFault(
         sensors=fault.suspects,
-        place=fault.sensor or "",
+        place=fault.suspects[0] if len(fault.suspects) == 1 else "",
         what=does if is_named else unnamed,
         remedy=say(REMEDIES.get(fault.kind, REPAIR), who=who) if is_named else say(FIND),
     )
@@ -79,7 +81,7 @@ def _by(fault: CourseFault, kind: str) -> str:
         return ""
     expanded = None if fault.sigma is None else COVERAGE * fault.sigma
     if fault.kind == DELAY:
-        return say(" by {size}", size=measured(fault.size, expanded, MILLISECONDS))
+        return say(" by {size}", size=measured(abs(fault.size), expanded, MILLISECONDS))
     if fault.kind == GAIN:
         return say(" by {size}", size=signed(fault.size, expanded, deviation_measure(kind, "scale", fault.size)))
     if fault.kind == RAMP:
@@ -105,7 +107,7 @@ def _moment(at: float, sigma: float, result: ParityResult, started_at: str | Non
     another than that of the start."""
     if result.block_seconds is None:
         return say("row {row} of the recording", row=int(at) + 1)
-    spread = round(COVERAGE * sigma)
+    spread = int(COVERAGE * sigma)
     seconds = f"{number(at, 0)}{HARD}±{HARD}{number(spread, 0)}" if spread else number(at, 0)
     into = say("{seconds} s into the recording", seconds=seconds)
     if started_at is None:

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from estimator.message import capitalised, joined, say
 from estimator.parity import ParityResult
+from estimator.parity.results import FULL_SCALE, STUCK, ZERO
 from service.judging.words import (
     CHANGED,
     MOST_CANDIDATES,
@@ -28,6 +29,8 @@ ONE_ORIENTATION = (
 )
 SMALLEST = 1e-4
 """Probability below which its size says no more."""
+SILENT = (STUCK, ZERO, FULL_SCALE)
+"""Of a sensor that says nothing any more; where too few others are left, it still stands in the part after."""
 PER_SENSOR = 4
 """Numbers of a sensor that can change: scale, bias and two turns of its axis."""
 
@@ -52,18 +55,27 @@ def parts_in_words(result: ParityResult) -> tuple[str, ...]:
     """What parity says of the part before a sensor fails, and of the part after; none where none does."""
     if not result.faults:
         return ()
-    kept = set() if result.after is None else {sensor.name for sensor in result.after.sensors}
+    kept = {sensor.name for sensor in result.after.sensors} if result.after is not None else set()
     left_out = joined(", ", (sensor.name for sensor in result.sensors if sensor.name not in kept))
-    without = say(", without {sensors}", sensors=left_out) if result.after is not None and left_out else ""
-    before = say("Before that: {found}.", found=_of_part(result.before))
-    after = say("From then on{without}: {found}.", without=without, found=_of_part(result.after))
-    return (before, after) if result.faults[0].since > 0 else (after,)
+    is_blind = any(fault.kind in SILENT and fault.sensor in kept for fault in result.faults)
+    after = None if is_blind else result.after
+    without = say(", without {sensors}", sensors=left_out) if after is not None and left_out else ""
+    lines = (
+        say("Before that: {found}.", found=_of_part(result.before, "no change since the calibration")),
+        say(
+            "From then on{without}: {found}.",
+            without=without,
+            found=_of_part(after, "nothing else has changed since the calibration"),
+        ),
+    )
+    return lines if result.faults[0].since > 0 else lines[1:]
 
 
-def _of_part(part: ParityResult | None) -> str:
+def _of_part(part: ParityResult | None, quiet: str) -> str:
+    """``quiet`` where nothing was found."""
     if part is None:
         return "too little to be judged"
-    return within(found_in_words(part)) if part.detected or part.moving else "no change since the calibration"
+    return within(found_in_words(part)) if part.detected or part.moving else quiet
 
 
 def _warnings(result: ParityResult) -> Iterator[str]:

@@ -69,7 +69,7 @@ def test_every_kind_is_said_with_its_action(kind: str, size: float | None, sente
 
 
 def test_two_exchanged_sensors_are_both_named_and_the_file_is_to_be_corrected() -> None:
-    text = said(replace(STUCK, kind="exchanged", sensor=None, suspects=("A1", "A4")))
+    text = said(replace(STUCK, kind="exchanged", suspects=("A1", "A4")))
     assert text == (
         f"A1 and A4 have been exchanged {SINCE}: check the wiring and the columns of A1 and A4, and upload the "
         "recording again corrected."
@@ -81,6 +81,12 @@ def test_a_sensor_that_cannot_be_named_is_one_of_several() -> None:
     assert text == (
         f"The bias of one of the sensors A1, A2, A3, A4 has been off {SINCE}; the redundancy is too small to say "
         "which: calibrate the unit to find the sensor, and replace or repair it."
+    )
+
+
+def test_a_delay_below_zero_is_early() -> None:
+    assert said(replace(STUCK, kind="delay", size=-0.02)).startswith(
+        "The readings of A3 have come early by 20\u202fms since"
     )
 
 
@@ -116,7 +122,7 @@ def test_the_parts_before_and_after_are_said_in_a_line_each() -> None:
     without = replace(sound(), sensors=tuple(s for s in sound().sensors if s.name != "A3"))
     assert parts_in_words(replace(sound(), faults=(STUCK,), before=sound(), after=without)) == (
         "Before that: no change since the calibration.",
-        "From then on, without A3: no change since the calibration.",
+        "From then on, without A3: nothing else has changed since the calibration.",
     )
     assert parts_in_words(replace(sound(), faults=(STUCK,)))[1] == "From then on: too little to be judged."
     assert parts_in_words(sound()) == ()
