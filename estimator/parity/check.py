@@ -98,7 +98,16 @@ class ParityAccumulator:
         before, after = parts if looked.faults else (None, None)
         begins = min((fault.since for fault in looked.faults), default=np.inf)
         top = before or after or self._compared(self.ledger, motion, false_alarm)
-        return replace(self._of_all(top), faults=looked.faults, before=before, after=after, **self._course(begins))
+        course, time, sigma = self._course(begins)
+        return replace(
+            self._of_all(top),
+            faults=looked.faults,
+            before=before,
+            after=after,
+            course_fine=course,
+            course_fine_time=time,
+            course_fine_sigma=sigma,
+        )
 
     def _of_all(self, top: ParityResult) -> ParityResult:
         """With the sensors that took no part, of which nothing is seen."""
@@ -141,9 +150,9 @@ class ParityAccumulator:
         change = freed(selection, ledger.reference, self._norm, allowed)
         return self._judged(ledger, selection, change, ParityEvidence(change), still, false_alarm)
 
-    def _course(self, begins: float) -> dict[str, Array]:
-        """The fine course of every sensor, for people to look at; its sigma is by the steps from point to point before
-        a sensor begins to fail, s."""
+    def _course(self, begins: float) -> tuple[Array, Array, Array]:
+        """(n, m) fine course of every sensor for people to look at, (n,) times and (m,) sigma, as `ParityResult` has
+        them; sigma is by the steps from point to point before a sensor ``begins`` to fail, s."""
         blocks, length = self.ledger.blocks(), self.ledger.length / (self._rate or 1.0)
         starts = np.arange(0, len(blocks), -(-len(blocks) // MOST) or 1)
         count = np.diff(np.append(starts, len(blocks)))
@@ -151,11 +160,7 @@ class ParityAccumulator:
         course = np.add.reduceat(blocks.mean, starts) @ V @ V.T / count[:, None]
         time = np.add.reduceat(blocks.first + 0.5, starts) / count * length
         steps = np.diff(course[time < begins] if (time < begins).sum() > 1 else course, axis=0)
-        return {
-            "course_fine": course,
-            "course_fine_time": time,
-            "course_fine_sigma": np.median(np.abs(steps), axis=0) / (NORMAL_QUARTILE * np.sqrt(2)),
-        }
+        return course, time, np.median(np.abs(steps), axis=0) / (NORMAL_QUARTILE * np.sqrt(2))
 
     def _judged(
         self,
