@@ -40,7 +40,7 @@ ACTIVE = 1 / 3
 """Part of the blocks in which the vector changes most."""
 BESIDE = 7
 """Blocks whose median a swing leaves: longer than a swing, shorter than what is asked about."""
-MOST_SWINGS = 0.9
+MOST_SWINGS = 0.97
 """Part of them that must not stand out."""
 TURNS = 4
 """Times that covariance and weights are taken in turns; they settle in three."""
@@ -64,8 +64,12 @@ class Course:
     halves: Array
     """(T, d) the same of half the difference of the halves."""
     signals: Array
-    """(T, K) what motion, load and time do, and ``sizes`` (K, d, d), the covariance of its size in whitened parity."""
+    """(T, K) what motion and time do, and ``sizes`` (K, d, d), the covariance of its size in whitened parity."""
     sizes: Array
+    norm: float
+    """g, m/s²; for gyros the root mean square rate, rad/s."""
+    swings: Array | None
+    """(T,) blocks a second, where nothing but the vector shows how the block swings; else None."""
 
     @cached_property
     def directions(self) -> Array:
@@ -83,30 +87,54 @@ class Course:
         u = self.directions[sensor] / max(length, np.finfo(float).tiny)
         return u, np.linalg.svd(u[None])[2][1:].T, length
 
-    def fixed(self, basis: Array) -> Array:
-        """(T, T) X·Λ·Xᵀ, the mean over the directions (d, n) of a basis."""
+    def fixed(self, basis: Array, sensor: int) -> Array:
+        """(T, T) X·Λ·Xᵀ, the mean over the directions (d, n) of a basis; the load without the sensor's own reading."""
         size = np.einsum("dn,kde,en->k", basis, self.sizes, basis) / basis.shape[1]
-        return np.asarray((self.signals * size) @ self.signals.T)
+        load, sizes = self.load(sensor)
+        own = sizes**2 * float(((self.directions @ basis) ** 2).sum() / basis.shape[1])
+        return np.asarray((self.signals * size) @ self.signals.T + (load * own) @ load.T)
 
-    @cached_property
-    def activity(self) -> Array:
+    def vector(self, sensor: int) -> Array:
+        """(T, 3) what the others say of the vector, m/s² (rad/s): a fault of the sensor does not bend it."""
+        a = self.blocks.mean.copy()
+        a[:, sensor] = self.felt[:, sensor]
+        return self.reference.vector(a)
+
+    def load(self, sensor: int) -> tuple[Array, Array]:
+        """Signals (T, K) of the load, the sensor's own reading apart, and their sizes, m/s² (rad/s), for any sensor."""
+        n = self.vector(sensor) / self.norm
+        signals, sizes = [n, pairs(n)], [SLOPE * self.norm] * 3 + [SIZE * UNSEEN_RATE**2] * 6
+        if self.swings is not None:
+            signals.append(swing(n, self.swings))
+            sizes += [SIZE] * 3
+        return np.hstack(signals), np.array(sizes)
+
+    def activity(self, sensor: int) -> Array:
         """(T,) how much the vector changes about a block, m/s² (rad/s)."""
-        n = self.reference.vector(self.blocks.mean)
+        n = self.vector(sensor)
         around = np.linalg.norm(np.diff(np.pad(n, ((1, 1), (0, 0)), mode="edge"), axis=0), axis=1)
         return np.asarray(maximum_filter1d(np.maximum(around[1:], around[:-1]), 3))
+
+    @cached_property
+    def plain_variance(self) -> Array:
+        """(T,) of an element of p in a block that moves as it does, whitened."""
+        variance = block_variance(self.halves)
+        activity = np.median([self.activity(k) for k in range(len(self.directions))], axis=0)
+        return np.asarray(variance + stirring(self.p, variance, activity) * activity**2)
 
     def scan(self, sensor: int, *, noisier: Array | float = 0.0) -> Scan:
         """The course along one sensor; ``noisier`` (T,) adds to the variance of a block, whitened."""
         u, across, _ = self.along(sensor)
-        x, h, fixed = self.p @ u, self.halves @ u, self.fixed(u[:, None])
+        x, h, fixed = self.p @ u, self.halves @ u, self.fixed(u[:, None], sensor)
         basis = across if across.shape[1] else u[:, None]
         variance = block_variance(self.halves @ basis)
         own = float(np.quantile(h**2 / variance, SOUND) / chdtri(1, 1 - SOUND))
         variance = variance * np.clip(own, 1.0, OWN**2)
-        others = stirring(self.p @ basis, variance, self.activity)
-        stirred = max(others, min(stirring(x[:, None], variance, self.activity), OWN**2 * others))
-        swung = stirred * np.outer(self.activity, self.activity) * remembered(len(x), MEMORIES[0])
-        colour = colour_of(self.p @ basis, variance, self.fixed(basis) + swung, 0.5)
+        activity = self.activity(sensor)
+        others = stirring(self.p @ basis, variance, activity)
+        stirred = max(others, min(stirring(x[:, None], variance, activity), OWN**2 * others))
+        swung = stirred * np.outer(activity, activity) * remembered(len(x), MEMORIES[0])
+        colour = colour_of(self.p @ basis, variance, self.fixed(basis, sensor) + swung, 0.5)
         alone = colour_of(x[:, None], variance, fixed + swung, SOUND, wandering=True)
         most = OWN**2 * colour.sum() + FAINT * float(np.median(variance))
         colour = np.maximum(colour, alone * min(1.0, most / max(alone.sum(), most)))
@@ -149,8 +177,10 @@ def course_of(ledger: Ledger, norm: float | None, rate: float) -> Course | None:
     nuisance = nuisance_of(blocks, rest, reference, norm, rate)
     p, halves = (blocks.mean - nuisance.known) @ reference.parity, blocks.halves @ reference.parity
     white = whitening(halves)
-    signals, sizes = known_motion(blocks, nuisance, reference, white, norm, rate)
-    return Course(reference, blocks, start, span, total, white, p @ white, halves @ white, signals, sizes)
+    signals, sizes = known_motion(blocks, nuisance, reference, white)
+    size = norm or float(np.sqrt((reference.vector(blocks.mean) ** 2).sum(axis=1).mean()))
+    swings = rate / blocks.samples if norm is not None and not blocks.spin.shape[1] else None
+    return Course(reference, blocks, start, span, total, white, p @ white, halves @ white, signals, sizes, size, swings)
 
 
 FEWEST = 24
@@ -178,30 +208,21 @@ def whitening(halves: Array) -> Array:
 
 
 def known_motion(
-    blocks: Blocks, nuisance: ParityNuisance, reference: ParityReference, white: Array, norm: float | None, rate: float
+    blocks: Blocks, nuisance: ParityNuisance, reference: ParityReference, white: Array
 ) -> tuple[Array, Array]:
-    """Signals (T, K) and the covariances (K, d, d) of their sizes: time, load, and every unknown of the nuisance."""
+    """Signals (T, K) and the covariances (K, d, d) of their sizes: time, and every unknown of the nuisance."""
     seen = reference.parity @ white
-    n = reference.vector(blocks.mean)
-    size = norm or float(np.sqrt((n**2).sum(axis=1).mean()))
     t = 2.0 * (blocks.first - blocks.first[0]) / max(int(np.ptp(blocks.first)), 1) - 1.0
     drift = np.column_stack([np.ones(len(t)), *(t**k for k in DRIFT)])
-    d = white.shape[0]
-    signals = [drift, n / size, pairs(n / size)]
-    free = np.tile(FREE**2 * np.eye(d), (drift.shape[1], 1, 1))
-    sizes = [free, np.tile((SLOPE * size) ** 2 * seen.T @ seen, (3, 1, 1))]
-    sizes.append(np.tile((SIZE * UNSEEN_RATE**2) ** 2 * seen.T @ seen, (6, 1, 1)))
-    if norm is not None and not blocks.spin.shape[1]:
-        signals.append(swing(blocks, reference, rate))
-        sizes.append(np.tile(SIZE**2 * seen.T @ seen, (3, 1, 1)))
+    free = np.tile(FREE**2 * np.eye(white.shape[0]), (drift.shape[1], 1, 1))
     moved = nuisance.signals @ nuisance.coefficient.T
-    sizes.append(np.einsum("kd,ke->kde", seen[nuisance.sensor], seen[nuisance.sensor]))
-    return np.hstack([*signals, moved]), np.concatenate(sizes)
+    own = np.einsum("kd,ke->kde", seen[nuisance.sensor], seen[nuisance.sensor])
+    return np.hstack([drift, moved]), np.concatenate([free, own])
 
 
-def swing(blocks: Blocks, reference: ParityReference, rate: float) -> Array:
-    """(T, 3) second derivative of the direction of the specific force, 1/s²: as fast the block swings, and a sensor at
-    r feels it as the acceleration ω̇ × r."""
-    toward = unit(reference.vector(blocks.mean))
+def swing(vectors: Array, often: Array) -> Array:
+    """(T, 3) second derivative of the direction of vectors (T, 3), 1/s², from blocks ``often`` (T,) a second: as fast
+    the block swings, and a sensor at r feels it as the acceleration ω̇ × r."""
+    toward = unit(vectors)
     second = np.diff(toward, 2, axis=0, prepend=toward[:1], append=toward[-1:])
-    return np.asarray(second * (rate / blocks.samples[:, None]) ** 2)
+    return np.asarray(second * often[:, None] ** 2)

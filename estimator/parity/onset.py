@@ -9,7 +9,7 @@ A sensor that explains almost as much stays a suspect, by the margin of `hypothe
 two where six or more allow two, is no fault of a sensor, and nothing is said of it here.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 from math import sqrt
 
@@ -27,16 +27,18 @@ from estimator.parity.standing import Standing, standing
 from estimator.session import Array
 from estimator.significance import critical_chi2
 
-LEVEL = 1e-3
-"""Chance that a sound recording is given a fault: a tenth of that of a change, to which it is added."""
+LEVEL = 1e-4
+"""Chance that a sound recording is given a fault, if motion is as modelled: far below that of a change."""
 SIGN_LEVEL = 1e-6
 """The same of noise and delays: variances of a few samples have longer tails than normal."""
-SKEW = 0.02
-"""Share of a change, in energy, that may lie across: an eighth of a radian, by motion meanwhile and clipped samples."""
+SKEW = 0.1
+"""Share of a change, in energy, that may lie across: a third of a radian, by motion meanwhile and clipped samples."""
 WRONG_SENSOR = 0.01
 """Chance that the true sensor is passed over, as of `hypotheses`."""
 NAMED = 5
 """Sensors that name one; two need one more."""
+OVER_NOISE = 2.0
+"""Times the critical z from which a course says more than the noise that has grown with it."""
 PAIR = 3
 """Dimensions of parity from which on not every two sensors explain a change."""
 MOST_FAULTS = 2
@@ -122,17 +124,24 @@ class Search:
         exchange = exchange_of(self.course)
         if exchange is not None:
             return [self._exchanged(exchange)], list(exchange.pair)
-        grown = growth_of(self.course) if self.complete else None
+        grown, late = self._sure(growth_of(self.course)), self._sure(lateness_of(self.course))
         scans = [self._scan(i, grown) for i in range(self.m)]
-        strongest = [float(np.abs(z).max()) for _, z in scans]
-        i = int(np.argmax(strongest))
-        if strongest[i] > self.critical:
-            return self._changed(i, *scans[i])
-        late = lateness_of(self.course) if self.complete else None
-        for sign, kind in ((late, DELAY), (grown, NOISE)):
-            if sign is not None and tail(sign.z, self.tests, self.freedom) < SIGN_LEVEL:
-                return self._signed(sign, kind)
-        return [], []
+        strongest = np.array([float(np.abs(z).max()) for _, z in scans])
+        i, needed = int(np.argmax(strongest)), self.critical
+        if grown is not None and strongest[i] < OVER_NOISE * max(grown.z, self.critical):
+            i, needed = grown.sensor, OVER_NOISE * self.critical
+        if strongest[i] > needed:
+            return self._changed(i, *scans[i], grown)
+        if grown is None:
+            return self._signed(late, late, DELAY) if late is not None else ([], [])
+        if late is not None and late.sensor == grown.sensor:
+            return self._signed(grown, late, DELAY)
+        return self._signed(grown, None if grown.follows else grown, DELAY if grown.follows else NOISE)
+
+    def _sure(self, sign: Sign | None) -> Sign | None:
+        """The sign, if it is sure; blocks of fewer sensors than the ledger's hold no signs that are theirs alone."""
+        sure = sign is not None and self.complete and tail(sign.z, self.tests, self.freedom) < SIGN_LEVEL
+        return sign if sure else None
 
     def _scan(self, sensor: int, grown: Sign | None) -> tuple[Scan, Array]:
         noisier = grown.noisier if grown is not None and grown.sensor == sensor else 0.0
@@ -160,9 +169,11 @@ class Search:
         """z from which on a change is one."""
         return critical(LEVEL, self.tests, self.freedom)
 
-    def _changed(self, i: int, scan: Scan, z: Array) -> tuple[list[CourseFault], list[int]]:
+    def _changed(self, i: int, scan: Scan, z: Array, grown: Sign | None) -> tuple[list[CourseFault], list[int]]:
         """The sensor and kind behind the strongest change."""
         shape = shape_of(self.course, scan, i, z)
+        if shape.kind == DELAY and grown is not None and grown.sensor == i:
+            shape = replace(shape, since=grown.shape.since, since_sigma=grown.shape.since_sigma)
         g = scan.whitened(shape.shape[:, None])[:, 0]
         seen = g @ scan.whitened(self.course.p) / np.linalg.norm(g)
         u = np.stack([self.course.along(k)[0] for k in range(self.m)])
@@ -197,15 +208,18 @@ class Search:
         size, sigma = (x * unit / self.course.along(suspects[0])[2] for x in scan.size(shape.shape))
         return self._dated(shape, suspects, shape.kind, size, sigma, p)
 
-    def _signed(self, sign: Sign, kind: str) -> tuple[list[CourseFault], list[int]]:
+    def _signed(self, sign: Sign, sized: Sign | None, kind: str) -> tuple[list[CourseFault], list[int]]:
         unit = 1.0 / self.rate if kind == DELAY else 1.0
         alone = self.course.p.shape[1] > 1
         suspects = [sign.sensor] if alone else [sign.sensor, *(k for k in range(self.m) if k != sign.sensor)]
         p = tail(sign.z, self.tests, self.freedom)
-        fault = self._dated(sign.shape, suspects, kind, sign.size * unit, sign.sigma * unit, p)
+        size = (None, None) if sized is None else (sized.size * unit, sized.sigma * unit)
+        fault = self._dated(sign.shape, suspects, kind, *size, p)
         return [fault], [sign.sensor] if alone else []
 
-    def _dated(self, shape: Shape, suspects: list[int], kind: str, size: float, sigma: float, p: float) -> CourseFault:
+    def _dated(
+        self, shape: Shape, suspects: list[int], kind: str, size: float | None, sigma: float | None, p: float
+    ) -> CourseFault:
         names = tuple(self.course.reference.names[k] for k in suspects)
         return CourseFault(
             sensor=names[0] if len(names) == 1 else None,

@@ -40,7 +40,7 @@ SCALES = 8
 """Neighbouring stretches that the longest scale must leave in the recording."""
 SOUND = 0.4
 """Part of a recording's differences that is taken for sound: onsets and what follows may hold the rest."""
-LEAST_NORM = 1e-7
+LEAST_NORM = 1e-5
 """Share of a change, in energy, that noise and motion must leave: the rounding of R."""
 
 

@@ -98,14 +98,18 @@ def coming_and_going(course: Course, scan: Scan, first: int, until: int) -> Shap
     return Shape(INTERMITTENT, square, begin, 0.5, end, on.astype(float), toggles)
 
 
+def lag(course: Course, sensor: int) -> Array:
+    """(T,) what a sensor loses that answers one sample late, m/s² (rad/s)."""
+    return np.asarray(-course.blocks.gain @ course.reference.axes[sensor] / course.blocks.samples)
+
+
 def shape_of(course: Course, scan: Scan, sensor: int, z: Array) -> Shape:
     """The kind that explains a sensor's course best."""
-    n = course.reference.vector(course.blocks.mean)
     felt = course.felt[:, sensor] + course.reference.bias[sensor]
-    late = -course.blocks.gain @ course.reference.axes[sensor] / course.blocks.samples
+    late = lag(course, sensor)
     plain = best_onset(course, scan, STEP, None)
     tried = [best_onset(course, scan, RAMP, None)]
-    if np.ptp(n @ course.reference.axes[sensor]) > 0:
+    if np.ptp(felt) > 0:
         tried += [best_onset(course, scan, GAIN, felt), best_onset(course, scan, DELAY, late)]
     began = int(np.searchsorted(course.blocks.first, np.floor(plain.since)))
     best = np.unravel_index(np.abs(z).argmax(), z.shape)

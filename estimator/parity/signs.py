@@ -30,6 +30,10 @@ GROWN = 2.5
 """Factor by which the variance must grow: motion of a new kind makes as much out of what is sound."""
 REGIME = 0.5
 """Samples; by which a sensor seems later in one motion than in another, by lever arms and filters."""
+FEW = 5
+"""Blocks that show a level."""
+MOVED = 0.8
+"""Share of the noise that follows the motion of the others where it is no noise."""
 LATER = 2.0
 """Samples that a delay must grow by."""
 FLOOR = 0.05
@@ -53,27 +57,30 @@ def exchange_of(course: Course) -> Exchange | None:
         return None
     a = course.blocks.mean
     u = reference.readings(a)
-    before = (course.p**2).sum(axis=1)
+    weight = 1.0 / course.plain_variance
+    before = (course.p**2).sum(axis=1) * weight
     best: Exchange | None = None
     for i, j in combinations(range(len(V)), 2):
         swapped = u.copy()
         swapped[:, [i, j]] = u[:, [j, i]]
         moved = course.p + (reference.felt(swapped) - a) @ V @ course.white
-        after = (moved**2).sum(axis=1)
+        after = (moved**2).sum(axis=1) * weight
         won = np.cumsum((before - after)[::-1])[::-1]
         k = int(won.argmax())
-        if won[k] > max(SURE, best.square if best else 0.0) and _alone(course, before, after, k):
+        if won[k] > max(SURE, best.square if best else 0.0) and _alone(course, weight, before[k:], after[k:]):
             best = Exchange((i, j), float(course.blocks.first[k]) if k else 0.0, float(won[k]))
     return best
 
 
-def _alone(course: Course, before: Array, after: Array, k: int) -> bool:
-    """Whether from block k on nothing else is as good: not the readings as they are, not a course of one sensor."""
-    if after[k:].sum() > LEFT * before[k:].sum():
+def _alone(course: Course, weight: Array, before: Array, after: Array) -> bool:
+    """Whether nothing else is as good in the last blocks: not the readings as they are, and not a course of one sensor,
+    which has a number for every block to do it with."""
+    if after.sum() > LEFT * before.sum():
         return False
     units = course.directions / np.linalg.norm(course.directions, axis=1, keepdims=True)
-    across = before[k:].sum() - ((course.p[k:] @ units.T) ** 2).sum(axis=0)
-    return bool(after[k:].sum() < LEFT * across.min())
+    last = slice(len(weight) - len(before), None)
+    across = before.sum() - (weight[last, None] * (course.p[last] @ units.T) ** 2).sum(axis=0)
+    return bool(after.sum() < max(LEFT * across.min(), LEFT**2 * before.sum()))
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,6 +95,8 @@ class Sign:
     sigma: float
     noisier: Array
     """(T,) variance that it adds to a block's mean, whitened."""
+    follows: bool = False
+    """Whether the noise is there only as far as the others move."""
 
 
 def growth_of(course: Course) -> Sign | None:
@@ -102,30 +111,35 @@ def growth_of(course: Course) -> Sign | None:
         size, sigma = scan.size(shape.shape)
         z = float(np.sqrt(shape.square))
         on = shape.shape > 0
-        added = float(np.median((power - explained * np.exp(_level(power, explained, ~on)))[on]))
+        w, beta = _fit(power[~on], b.change[~on, i]) if (~on).sum() >= FEW else (float(explained.min()), 0.0)
+        added = float(np.median(power[on] - w - beta * b.change[on, i]))
         if size < np.log(GROWN) or added <= 0 or (best is not None and added <= best.size):
             continue
-        length = course.along(i)[2]
-        noisier = shape.shape * added / visible[i] * length**2 / b.samples
-        best = Sign(i, shape, z, added, sigma, noisier)
+        noisier = shape.shape * added / visible[i] * course.along(i)[2] ** 2 / b.samples
+        w, beta = _fit(power[on], b.change[on, i])
+        moved = beta * float(np.median(b.change[on, i]))
+        best = Sign(i, shape, z, added, sigma, noisier, moved > MOVED * (w + moved))
     if best is None:
         return None
     grown = float(np.sqrt(best.size / visible[best.sensor]))
-    return Sign(best.sensor, best.shape, best.z, grown, 0.5 * grown * best.sigma, best.noisier)
-
-
-def _level(power: Array, explained: Array, sound: Array) -> float:
-    return float(np.median(np.log(np.maximum(power, 1e-300) / explained)[sound])) if sound.any() else 0.0
+    return Sign(best.sensor, best.shape, best.z, grown, 0.5 * grown * best.sigma, best.noisier, best.follows)
 
 
 def _explained(power: Array, change: Array) -> Array:
     """(T,) power (T,) as a constant and a share of the change (T,), each by its own relative error."""
+    w, beta = _fit(power, change)
+    return np.asarray(w + beta * change + 1e-9 * np.median(power) + np.finfo(float).tiny)
+
+
+def _fit(power: Array, change: Array) -> tuple[float, float]:
+    """The constant and the share."""
     fitted = np.full(len(power), float(np.median(power)) + np.finfo(float).tiny)
+    w, beta = 0.0, 0.0
     for _ in range(3):
         weight = 1.0 / np.maximum(fitted, power)
         w, beta = nnls(np.column_stack([weight, change * weight]), power * weight)[0]
         fitted = w + beta * change + 1e-9 * fitted
-    return np.asarray(fitted)
+    return float(w), float(beta)
 
 
 def _steps(x: Array) -> Scan:
