@@ -59,10 +59,11 @@ def faults_in_words(result: ParityResult, started_at: str | None) -> tuple[Servi
 
 def _in_words(fault: CourseFault, result: ParityResult, started_at: str | None) -> ServiceFault:
     is_named = fault.sensor is not None or fault.kind == EXCHANGED
-    who = joined(" and ", fault.suspects)
+    names = [sensor.name for sensor in result.sensors if sensor.name in fault.suspects]
+    who = joined(" and ", names)
     does = say(
         EARLY if fault.kind == DELAY and (fault.size or 0.0) < 0 else DOES[fault.kind],
-        who=who if is_named else say("one of the sensors {names}", names=joined(", ", fault.suspects)),
+        who=who if is_named else say("one of the sensors {names}", names=joined(", ", names)),
         by=_by(fault, result.kind) if fault.kind in SIZED else "",
         when=_when(fault, result, started_at),
     )
