@@ -4,12 +4,11 @@ A block begins as `BLOCK` seconds of samples. When there are too many, neighbour
 are twice as long from then on. A block keeps the mean of each sensor's input, how much the inputs moved within it, the
 extreme readings, by which a channel that ran into its end is known, and what lever arms, delays and vibration do to a
 mean: the moments of the angular rate, the change of the vector from end to end, its covariance. For the course in time
-it keeps by sensor how its halves differ, how often a reading stood still, how parity flutters from sample to sample,
-and how it goes with the change of what the others feel, which is what a delay does.
+it keeps by sensor how its halves differ, how often a reading stood still, and how parity and what the others say of it
+change from sample to sample.
 """
 
 import copy
-
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -52,10 +51,8 @@ class Blocks:
     """(B, m) the same of V·p: motion shows little in it."""
     standing: Array
     """(B, m) share of the samples that read what the one before reads."""
-    late: Array
-    """(B, m) mean product of V·p and the change of what the others say of the sensor, (m/s²)² ((rad/s)²) a sample."""
     change: Array
-    """(B, m) mean square of that change, (m/s²)² ((rad/s)²) a sample²."""
+    """(B, m) mean square of the change of what the others say of a sensor, (m/s²)² ((rad/s)²) a sample²."""
     lowest: Array
     """(B, m) smallest reading, reading units."""
     highest: Array
@@ -104,7 +101,6 @@ class Blocks:
             jitter=np.maximum(left["jitter"], right["jitter"]),
             flutter=mean("flutter"),
             standing=mean("standing"),
-            late=mean("late"),
             change=mean("change"),
             lowest=np.minimum(left["lowest"], right["lowest"]),
             highest=np.maximum(left["highest"], right["highest"]),
@@ -117,7 +113,7 @@ class Blocks:
         )
 
 
-BY_SENSOR = ("mean", "halves", "motion", "jitter", "flutter", "standing", "late", "change", "lowest", "highest")
+BY_SENSOR = ("mean", "halves", "motion", "jitter", "flutter", "standing", "change", "lowest", "highest")
 """Columns of blocks that hold a number for every sensor."""
 
 
@@ -241,7 +237,6 @@ class Ledger:
                 jitter=0.5 * (np.diff(a, axis=1) ** 2).sum(axis=1) / between,
                 flutter=0.5 * (np.diff(shown, axis=1) ** 2).sum(axis=1) / between,
                 standing=(steps == 0).sum(axis=1) / between,
-                late=0.5 * ((shown[:, 1:] + shown[:, :-1]) * others).sum(axis=1) / between,
                 change=(others**2).sum(axis=1) / between,
                 lowest=chunked.min(axis=1),
                 highest=chunked.max(axis=1),

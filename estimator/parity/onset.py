@@ -2,7 +2,7 @@
 
 In this order, each with a rule of its own: dead sensors, by their raw readings (`standing`); two that are exchanged,
 because exchanging them back makes parity quiet; then, sensor by sensor, a course that changes (`scan`, `shapes`), noise
-that grows and answers that come late (`signs`). A sensor that has been found takes no part in the search for the next.
+that grows (`signs`). A sensor that has been found takes no part in the search for the next.
 
 Naming. A change along V[i] leaves nothing across but noise and a small part (`SKEW`) by which directions are not known.
 A sensor that explains almost as much stays a suspect, by the margin of `hypotheses`. What no one sensor explains, and no
@@ -21,8 +21,8 @@ from estimator.parity.ledger import Ledger
 from estimator.parity.reference import FEWEST
 from estimator.parity.results import DELAY, EXCHANGED, NOISE, RAMP, CourseFault
 from estimator.parity.scan import Scan, critical, tail
-from estimator.parity.shapes import Shape, shape_of
-from estimator.parity.signs import Exchange, Sign, exchange_of, growth_of, lateness_of
+from estimator.parity.shapes import Shape, best_onset, lag, shape_of
+from estimator.parity.signs import Exchange, Sign, exchange_of, growth_of
 from estimator.parity.standing import Standing, standing
 from estimator.session import Array
 from estimator.significance import critical_chi2
@@ -124,19 +124,20 @@ class Search:
         exchange = exchange_of(self.course)
         if exchange is not None:
             return [self._exchanged(exchange)], list(exchange.pair)
-        grown, late = self._sure(growth_of(self.course)), self._sure(lateness_of(self.course))
+        grown = self._sure(growth_of(self.course))
         scans = [self._scan(i, grown) for i in range(self.m)]
-        strongest = np.array([float(np.abs(z).max()) for _, z in scans])
+        strongest = np.array([self._strongest(i, *scans[i]) for i in range(self.m)])
         i, needed = int(np.argmax(strongest)), self.critical
         if grown is not None and strongest[i] < OVER_NOISE * max(grown.z, self.critical):
             i, needed = grown.sensor, OVER_NOISE * self.critical
         if strongest[i] > needed:
-            return self._changed(i, *scans[i], grown)
-        if grown is None:
-            return self._signed(late, late, DELAY) if late is not None else ([], [])
-        if late is not None and late.sensor == grown.sensor:
-            return self._signed(grown, late, DELAY)
-        return self._signed(grown, None if grown.follows else grown, DELAY if grown.follows else NOISE)
+            return self._changed(i, *scans[i], grown, tail(strongest[i], self.tests, self.freedom))
+        return ([], []) if grown is None else self._grown(grown)
+
+    def _strongest(self, sensor: int, scan: Scan, z: Array) -> float:
+        """z of the strongest change: a shift over any interval, or an answer that comes late from some moment on."""
+        late = best_onset(self.course, scan, DELAY, lag(self.course, sensor))
+        return max(float(np.abs(z).max()), sqrt(late.square))
 
     def _sure(self, sign: Sign | None) -> Sign | None:
         """The sign, if it is sure; blocks of fewer sensors than the ledger's hold no signs that are theirs alone."""
@@ -169,7 +170,9 @@ class Search:
         """z from which on a change is one."""
         return critical(LEVEL, self.tests, self.freedom)
 
-    def _changed(self, i: int, scan: Scan, z: Array, grown: Sign | None) -> tuple[list[CourseFault], list[int]]:
+    def _changed(
+        self, i: int, scan: Scan, z: Array, grown: Sign | None, p: float
+    ) -> tuple[list[CourseFault], list[int]]:
         """The sensor and kind behind the strongest change."""
         shape = shape_of(self.course, scan, i, z)
         if shape.kind == DELAY and grown is not None and grown.sensor == i:
@@ -179,7 +182,6 @@ class Search:
         u = np.stack([self.course.along(k)[0] for k in range(self.m)])
         along, total = (u @ seen) ** 2, float(seen @ seen)
         d = len(seen)
-        p = tail(float(np.abs(z).max()), self.tests, self.freedom)
         if d > 1 and total - along[i] > critical_chi2(LEVEL, d - 1, self.freedom) + SKEW * total:
             return self._two(shape, scan, seen, u, p)
         margin = float(ndtri(WRONG_SENSOR / max(self.m - 1, 1))) ** 2
@@ -208,14 +210,13 @@ class Search:
         size, sigma = (x * unit / self.course.along(suspects[0])[2] for x in scan.size(shape.shape))
         return self._dated(shape, suspects, shape.kind, size, sigma, p)
 
-    def _signed(self, sign: Sign, sized: Sign | None, kind: str) -> tuple[list[CourseFault], list[int]]:
-        unit = 1.0 / self.rate if kind == DELAY else 1.0
+    def _grown(self, sign: Sign) -> tuple[list[CourseFault], list[int]]:
+        """Noise, or motion that comes late."""
         alone = self.course.p.shape[1] > 1
         suspects = [sign.sensor] if alone else [sign.sensor, *(k for k in range(self.m) if k != sign.sensor)]
         p = tail(sign.z, self.tests, self.freedom)
-        size = (None, None) if sized is None else (sized.size * unit, sized.sigma * unit)
-        fault = self._dated(sign.shape, suspects, kind, *size, p)
-        return [fault], [sign.sensor] if alone else []
+        kind, size = (DELAY, (None, None)) if sign.follows else (NOISE, (sign.size, sign.sigma))
+        return [self._dated(sign.shape, suspects, kind, *size, p)], [sign.sensor] if alone else []
 
     def _dated(
         self, shape: Shape, suspects: list[int], kind: str, size: float | None, sigma: float | None, p: float

@@ -19,6 +19,8 @@ SIMPLER = 6.0
 """z² by which a kind must explain the course better than a plain step: odds of twenty."""
 TOGGLE = 25.0
 """z² that a return, or a relapse, must explain: one of all pairs of moments by chance in a thousand recordings."""
+CERTAIN = 0.9
+"""Of z²; what more returns add to a large change may be motion meanwhile, which is in proportion to nothing known."""
 TOGGLES = 60
 """Stretches at most."""
 
@@ -37,6 +39,11 @@ class Shape:
     shape: Array
     """(T,)"""
     toggles: int = 0
+
+    @property
+    def worth(self) -> float:
+        """z² less what its returns must bring."""
+        return self.square if not self.toggles else CERTAIN * self.square - TOGGLE * self.toggles
 
 
 def entered(course: Course, onsets: Array) -> Array:
@@ -115,5 +122,5 @@ def shape_of(course: Course, scan: Scan, sensor: int, z: Array) -> Shape:
     best = np.unravel_index(np.abs(z).argmax(), z.shape)
     starts = ((began, len(scan.white)), (int(best[0]), int(best[1])))
     tried += [s for s in (coming_and_going(course, scan, *start) for start in starts) if s.toggles]
-    best = max(tried, key=lambda s: s.square - TOGGLE * s.toggles)
-    return best if best.square - TOGGLE * best.toggles > plain.square + SIMPLER else plain
+    best = max(tried, key=lambda s: s.worth)
+    return best if best.worth > plain.square + SIMPLER else plain

@@ -1,11 +1,10 @@
-"""Signs of a fault beside its mean: two sensors exchanged, noise that grows, answers that come late.
+"""Signs of a fault beside its mean: two sensors exchanged, noise that grows.
 
 exchanged  with the readings of two exchanged back, parity from some moment on is as quiet as before it. Compared with
            the readings as they are by likelihood, and with any course of one sensor alone.
 noise      parity flutters from sample to sample with the noise of the sensors, and with vibration, by what the other
            sensors feel of it. What is beyond that, in logarithms, steps up.
-delay      a sensor that answers τ late has in parity −τ times the change of what the others feel: the mean product of
-           both, over the mean square of the change, steps.
+           Where it goes with what the others feel, it is no noise but motion that comes late.
 """
 
 from dataclasses import dataclass
@@ -17,8 +16,8 @@ from scipy.optimize import nnls
 from scipy.special import chdtri
 
 from estimator.parity.course import FREE, Course
-from estimator.parity.results import DELAY, NOISE
-from estimator.parity.scan import MEMORIES, NEAR, Scan, colour_of, remembered, scan_of
+from estimator.parity.results import NOISE
+from estimator.parity.scan import NEAR, Scan, colour_of, scan_of
 from estimator.parity.shapes import Shape, best_onset
 from estimator.session import Array
 
@@ -28,16 +27,11 @@ LEFT = 0.2
 """Share of the energy of parity that an exchange may leave at most, and that one sensor's course must leave more."""
 GROWN = 2.5
 """Factor by which the variance must grow: motion of a new kind makes as much out of what is sound."""
-REGIME = 0.5
-"""Samples; by which a sensor seems later in one motion than in another, by lever arms and filters."""
 FEW = 5
 """Blocks that show a level."""
-MOVED = 0.8
-"""Share of the noise that follows the motion of the others where it is no noise."""
-LATER = 2.0
-"""Samples that a delay must grow by."""
-FLOOR = 0.05
-"""Part of the blocks in which what the others feel changes least: by noise alone."""
+FOLLOWS = 0.5
+"""Of the scatter of the grown noise, in logarithms, that its ratio to the motion of the others has at most where it is
+motion."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +85,7 @@ class Sign:
     shape: Shape
     z: float
     size: float
-    """noise: m/s² (rad/s), one sigma of a sample; delay: samples."""
+    """m/s² (rad/s), one sigma of a sample."""
     sigma: float
     noisier: Array
     """(T,) variance that it adds to a block's mean, whitened."""
@@ -116,9 +110,8 @@ def growth_of(course: Course) -> Sign | None:
         if size < np.log(GROWN) or added <= 0 or (best is not None and added <= best.size):
             continue
         noisier = shape.shape * added / visible[i] * course.along(i)[2] ** 2 / b.samples
-        w, beta = _fit(power[on], b.change[on, i])
-        moved = beta * float(np.median(b.change[on, i]))
-        best = Sign(i, shape, z, added, sigma, noisier, moved > MOVED * (w + moved))
+        alone, beside = np.log(power[on]), np.log(power[on] / b.change[on, i])
+        best = Sign(i, shape, z, added, sigma, noisier, bool(beside.std() < FOLLOWS * alone.std()))
     if best is None:
         return None
     grown = float(np.sqrt(best.size / visible[best.sensor]))
@@ -155,20 +148,3 @@ def _roughness(x: Array) -> Array:
     square = np.pad(square, 1, mode="edge")
     local = median_filter(square, size=min(NEAR, len(x)), mode="nearest") / chdtri(1, 0.5)
     return np.asarray(np.maximum(local, 0.3 * np.median(square) / chdtri(1, 0.5)) + np.finfo(float).tiny)
-
-
-def lateness_of(course: Course) -> Sign | None:
-    """The sensor that most surely answers later from some moment on; None where none does by `LATER`."""
-    b, visible, best = course.blocks, course.reference.visible, None
-    for i in range(b.late.shape[1]):
-        g = -visible[i] * (b.change[:, i] - np.quantile(b.change[:, i], FLOOR))
-        noise = b.flutter[:, i] * b.change[:, i] / b.samples
-        rough = _roughness(b.late[:, i] / np.sqrt(noise + np.finfo(float).tiny))
-        fixed = np.outer(g, g) * (FREE + REGIME**2 * remembered(len(g), MEMORIES[1]))
-        scan = scan_of(b.late[:, i], noise * np.maximum(rough, 1.0), np.zeros(len(MEMORIES)), fixed)
-        shape = best_onset(course, scan, DELAY, g)
-        size, sigma = scan.size(shape.shape)
-        z = float(np.sqrt(shape.square))
-        if abs(size) > LATER and (best is None or z > best.z):
-            best = Sign(i, shape, z, size, sigma, np.zeros(len(g)))
-    return best
