@@ -4,22 +4,31 @@ Nothing detected: a parameter passes when a change of the size of its tolerance 
 power; otherwise it is undecidable, because it could not have been seen. A change detected: the candidates are judged by
 the four-state rule on the change that each would need; the others as if nothing were detected, unless the candidates
 do not explain the finding or name several sensors: then nobody passes.
+
+A sensor that fails within the recording is out of tolerance in every parameter, whatever it was before, and by how much
+is not known; where several could be the one, all of them. The others are judged by the part before.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from scipy.special import chndtr, ndtr
 
 from estimator.health.decision import ParameterJudgement
-from estimator.health.rule import PASS, UNDECIDABLE, state
+from estimator.health.rule import FAIL, PASS, UNDECIDABLE, state
+from estimator.parity.as_calibration import before_faults
 from estimator.parity.results import SEVERAL, ParityResult, SensorParity, Sight
 from estimator.results import Calibration
 
-RULE = "parity/1"
+RULE = "parity/2"
 PARAMETERS = ("scale", "bias", "axis")
 """In the order judged; parity says nothing of the second-order term."""
+
+NOT_KNOWN = dict.fromkeys(("deviation", "uncertainty", "expanded", "probability_out", "critical"))
+FAILED: Mapping[str, Any] = {**NOT_KNOWN, "verdict": FAIL}
+"""Of every parameter of a sensor that fails."""
 
 
 def judge_parity(
@@ -38,12 +47,15 @@ def judge_parity(
     tolerances : T by (kind of sensor, parameter): relative for scale, else SI.
     coverage_factor : k.
     """
-    return tuple(
-        _judged(_ParityCase(result, sensor, parameter, tolerance), reference, coverage_factor)
-        for sensor in result.sensors
+    known = before_faults(result)
+    judged = (
+        _judged(_ParityCase(known, sensor, parameter, tolerance), reference, coverage_factor)
+        for sensor in known.sensors
         for parameter in PARAMETERS
         if (tolerance := tolerances.get((result.kind, parameter))) is not None
     )
+    at_fault = {name for fault in result.faults for name in fault.suspects}
+    return tuple(replace(j, **FAILED) if j.sensor in at_fault else j for j in judged)
 
 
 @dataclass(frozen=True)

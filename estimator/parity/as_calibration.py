@@ -2,41 +2,52 @@
 
 Of every parameter: the reference's value and the change that the recording shows, each as if it alone had changed, or
 beside the change of the isolated sensor. The uncertainty is that of the change. Of the second-order term parity says
-nothing.
+nothing. Where a sensor fails within the recording, the part before tells the parameters.
 """
+
+from dataclasses import replace
 
 import numpy as np
 from scipy.linalg import block_diag
 
 from estimator.arrays import unit
-from estimator.parity.results import ParityResult, SensorParity, Sight
+from estimator.parity.results import NOTHING, ParityResult, SensorParity, Sight
 from estimator.results import Calibration, Estimate, Fit, Residuals, SensorCalibration
 from estimator.session import ACCELEROMETER, Array
 
 METHOD = "in-service/parity"
 
 
+def before_faults(result: ParityResult) -> ParityResult:
+    """The part before a sensor fails; where that is too short, nothing is seen of any sensor."""
+    if not result.faults:
+        return result
+    blind = tuple(replace(sensor, bias=NOTHING, scale=NOTHING, axis=NOTHING) for sensor in result.sensors)
+    return result.before or replace(result, sensors=blind)
+
+
 def parity_calibration(result: ParityResult, reference: Calibration) -> Calibration:
     """The reference moved by what the recording shows, sensor by sensor; ``parity`` holds the whole result."""
-    pairs = [(sensor, reference.sensor(sensor.name)) for sensor in result.sensors]
+    known = before_faults(result)
+    pairs = [(sensor, reference.sensor(sensor.name)) for sensor in known.sensors]
     sensors = tuple(moved(sensor, known) for sensor, known in pairs)
     covariance = block_diag(*(covariance_of(sensor, known) for sensor, known in pairs))
-    places = [reference.names.index(name) for name in names(result)]
+    places = [reference.names.index(name) for name in names(known)]
     return Calibration(
         unit=result.unit,
         method=METHOD,
         sensors=sensors,
-        names=names(result),
+        names=names(known),
         units=tuple(reference.units[k] for k in places),
         covariance=covariance,
         repeatability=covariance,
-        fit=fit(result),
+        fit=fit(known),
         residuals=Residuals(
-            value=result.course,
-            sigma=np.broadcast_to(result.course_sigma, result.course.shape),
+            value=known.course,
+            sigma=np.broadcast_to(known.course_sigma, known.course.shape),
             beta=None,
             flipped=None,
-            time=result.course_time,
+            time=known.course_time,
             temperature=None,
         ),
         gauge="parity",

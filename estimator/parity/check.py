@@ -8,7 +8,7 @@ import numpy as np
 from estimator.applied_vector import gravity
 from estimator.message import joined, say
 from estimator.parity.blocks import ANY, AUTO, MOTIONS, BlockSelection, select
-from estimator.parity.course import Course
+from estimator.parity.course import MOST
 from estimator.parity.freed import freed
 from estimator.parity.hypotheses import ParityEvidence
 from estimator.parity.ledger import BLOCK, Ledger
@@ -17,13 +17,15 @@ from estimator.parity.nuisance import nuisance_of
 from estimator.parity.onset import Looked, faults_of
 from estimator.parity.reference import FEWEST, reference_of
 from estimator.parity.regression import ParityChange, regress
-from estimator.parity.results import ParityResult
+from estimator.parity.results import NOTHING, ParityResult, SensorParity
 from estimator.results import Calibration
 from estimator.session import ACCELEROMETER, Array, CalibrationSession, Sensor, Site
 
 FALSE_ALARM = 0.01
 """One unchanged block in a hundred may be called changed, as in a session (`health.rule`)."""
 
+NORMAL_QUARTILE = 0.6745
+"""Sigma, which half of what is normal stays within."""
 COMMON = 12
 """Dimensions that no recording shows: three of a common bias, nine of a linear map of the applied vector."""
 
@@ -90,8 +92,28 @@ class ParityAccumulator:
         sound = [k for k in range(len(self.reference.names)) if k not in looked.silent]
         parts = [self._part(ledger, motion, false_alarm) for ledger in self._parts(looked, sound)]
         before, after = parts if looked.faults else (None, None)
+        begins = min((fault.since for fault in looked.faults), default=np.inf)
         top = before or after or self._compared(self.ledger, motion, false_alarm)
-        return replace(top, faults=looked.faults, before=before, after=after, **self._course(looked.course))
+        course, time, sigma = self._course(begins)
+        return replace(
+            self._of_all(top),
+            faults=looked.faults,
+            before=before,
+            after=after,
+            course_fine=course,
+            course_fine_time=time,
+            course_fine_sigma=sigma,
+        )
+
+    def _of_all(self, top: ParityResult) -> ParityResult:
+        """With the sensors that took no part, of which nothing is seen."""
+        seen = {sensor.name: sensor for sensor in top.sensors}
+        kept = np.array([name in seen for name in self.reference.names])
+        course, sigma = np.full((len(top.course), len(kept)), np.nan), np.full(len(kept), np.nan)
+        course[:, kept], sigma[kept] = top.course, top.course_sigma
+        unseen = (SensorParity(name, 0.0, NOTHING, NOTHING, NOTHING) for name in self.reference.names)
+        sensors = tuple(seen.get(sensor.name, sensor) for sensor in unseen)
+        return replace(top, sensors=sensors, course=course, course_sigma=sigma)
 
     def _parts(self, looked: Looked, sound: list[int]) -> Iterator[Ledger]:
         """The part before the first fault and that after the last has begun or ended.
@@ -124,18 +146,17 @@ class ParityAccumulator:
         change = freed(selection, ledger.reference, self._norm, allowed)
         return self._judged(ledger, selection, change, ParityEvidence(change), still, false_alarm)
 
-    def _course(self, course: Course | None) -> dict[str, Array]:
-        """The fine course of every sensor, for people to look at."""
-        if course is None:
-            return {}
-        V, rate = course.reference.parity, self._rate or 1.0
-        middle = course.start + (course.blocks.first + 0.5) * course.span
-        sigma = np.linalg.norm(V @ np.linalg.inv(course.white), axis=1)
-        return {
-            "course_fine": course.blocks.mean @ V @ V.T,
-            "course_fine_time": middle * self.ledger.length / rate,
-            "course_fine_sigma": sigma,
-        }
+    def _course(self, begins: float) -> tuple[Array, Array, Array]:
+        """(n, m) fine course of every sensor for people to look at, (n,) times and (m,) sigma, as `ParityResult` has
+        them; sigma is by the steps from point to point before a sensor ``begins`` to fail, s."""
+        blocks, length = self.ledger.blocks(), self.ledger.length / (self._rate or 1.0)
+        starts = np.arange(0, len(blocks), -(-len(blocks) // MOST) or 1)
+        count = np.diff(np.append(starts, len(blocks)))
+        V = self.reference.parity
+        course = np.add.reduceat(blocks.mean, starts) @ V @ V.T / count[:, None]
+        time = np.add.reduceat(blocks.first + 0.5, starts) / count * length
+        steps = np.diff(course[time < begins] if (time < begins).sum() > 1 else course, axis=0)
+        return course, time, np.median(np.abs(steps), axis=0) / (NORMAL_QUARTILE * np.sqrt(2))
 
     def _judged(
         self,

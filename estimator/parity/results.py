@@ -84,6 +84,10 @@ class Sight:
         return None if self.covariance is None else math.sqrt(sum(row[k] for k, row in enumerate(self.covariance)))
 
 
+NOTHING = Sight(None, None, None, None)
+"""Of a parameter that a recording tells nothing of."""
+
+
 @dataclass(frozen=True)
 class SensorParity:
     """One sensor, seen through parity."""

@@ -11,9 +11,12 @@ from rich.text import Text
 from estimator import calibrate
 from estimator.message import joined
 from estimator.parity import ParityAccumulator, ParityResult
+from estimator.parity.as_calibration import before_faults
 from estimator.parity.results import Sight
 from service.commands.console import AsJson, print_json, screen, usable
 from service.ingest.stream import open_recording, session_in
+from service.judging.fault_words import faults_in_words, said_of
+from service.judging.parity_words import parts_in_words
 from service.judging.temperature_words import far_from_reference
 from service.judging.words import found_in_words
 from service.kit.measures import COVERAGE, in_words
@@ -33,16 +36,16 @@ def parity(
     """Judge a recording in service by what the redundant sensors say of one another; no stand needed."""
     if motion not in ("auto", "still", "any"):
         raise typer.BadParameter(f"motion is {motion!r}; choose auto, still or any")
-    result, away = _result(file, reference, motion, false_alarm)
+    result, started_at, away = _result(file, reference, motion, false_alarm)
     if as_json:
         print_json(result.to_dict())
     else:
-        screen().print(parity_view(result, away))
+        screen().print(parity_view(result, started_at, away))
 
 
-def _result(file: Path, reference: Path, motion: str, false_alarm: float) -> tuple[ParityResult, str]:
-    """The result, and that it was recorded far from the calibration's temperatures; exit code 2 with one line when
-    either file cannot be used."""
+def _result(file: Path, reference: Path, motion: str, false_alarm: float) -> tuple[ParityResult, str | None, str]:
+    """The result, when the recording began, in UTC, and whether that was far from the calibration's temperatures, in
+    words; exit code 2 with one line when either file cannot be used."""
     with usable(reference):
         calibration = calibrate(session_in(reference))
     with usable(file):
@@ -61,20 +64,23 @@ def _result(file: Path, reference: Path, motion: str, false_alarm: float) -> tup
             accumulator.add(chunk)
         celsius = None if head.temperature is None else float(head.temperature.mean())
         away = far_from_reference(celsius, calibration.residuals)
-        return accumulator.result(motion=motion, false_alarm=false_alarm), away
+        return accumulator.result(motion=motion, false_alarm=false_alarm), head.started_at, away
 
 
-def parity_view(result: ParityResult, away: str = "") -> RenderableType:
+def parity_view(result: ParityResult, started_at: str | None, away: str = "") -> RenderableType:
     """The finding in a sentence, what temperature leaves of it, then every sensor: its apparent change, and the
-    detection limit."""
+    detection limit; where one fails within the recording, by the part before."""
+    faults, known = faults_in_words(result, started_at), before_faults(result)
     table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
     for heading in ("sensor", "visible", *(f"{name}{part}" for name in PARAMETERS for part in ("", ", seen from"))):
         table.add_column(heading, justify="left" if heading == "sensor" else "right", no_wrap=True)
-    for sensor in result.sensors:
+    for sensor in known.sensors:
         cells = [cell for name in PARAMETERS for cell in _cells(result.kind, name, getattr(sensor, name))]
         table.add_row(sensor.name, f"{100 * sensor.visible_share:.0f} %", *cells)
+    said = said_of(faults) if faults else f"{found_in_words(result)}."
     return Group(
-        Text.assemble((result.unit, "bold"), joined(" ", filter(None, (f": {found_in_words(result)}.", away)))),
+        Text.assemble((result.unit, "bold"), f": {joined(' ', filter(None, (said, away)))}"),
+        *map(Text, parts_in_words(result)),
         Text(f"χ² {result.chi2:.1f} of {result.dof} numbers, p = {result.p_value:.3g}; {_used(result)}."),
         table,
     )

@@ -35,6 +35,8 @@ class ReferenceComparison:
 
     reference: Calibration
     result: ParityResult
+    started_at: str | None = None
+    """Of the recording, in UTC; None where its file does not say."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +62,9 @@ def calibrate(new: Checked, basis: CalibrationBasis) -> Calibrated:
     """The numerical part, with no store at hand; SessionError where the session cannot tell what it should."""
     if basis.compared_with is None:
         return Calibrated(new, basis.model, _under(basis.model, new.session), None)
-    found = ReferenceComparison(basis.compared_with, parity_check(new.session, basis.compared_with))
+    found = ReferenceComparison(
+        basis.compared_with, parity_check(new.session, basis.compared_with), new.session.started_at
+    )
     moved = replace(parity_calibration(found.result, found.reference), screening=new.session.screening)
     return Calibrated(new, basis.model, moved, found)
 

@@ -14,6 +14,7 @@ from estimator.health.temperature_law import NO_STEPS, Steps, at_reference
 from estimator.message import joined, say
 from estimator.results import Calibration
 from service.judging.calibrate import ReferenceComparison
+from service.judging.fault_words import faults_in_words
 from service.judging.temperature_words import far_from_reference
 from service.judging.words import first_in_words, reason, recording_in_words
 from service.kit.lock_order import outside_writing
@@ -84,21 +85,25 @@ def judge_recording(
     coverage_factor: float,
     celsius: float | None = None,
 ) -> Judged:
-    """Every parameter that parity sees, judged, and the recording by its worst.
+    """Every parameter that parity sees, judged, and the recording by its worst, or by a sensor that fails within it.
 
-    Far from the temperatures of its calibration, ``celsius``, a change may be temperature's: it decides nothing.
+    Far from the temperatures of its calibration, ``celsius``, a change may be temperature's: it decides nothing. A
+    sensor that fails within the recording fails at any temperature.
     """
     tolerances = tolerances_of(unit_type)
     seen = judge_parity(found.result, found.reference, tolerances, coverage_factor=coverage_factor)
     decisions = _decisions(seen, PARITY_RULE, unit_type)
-    said, away = recording_in_words(found.result, decisions), far_from_reference(celsius, found.reference.residuals)
-    if away and any(decision.verdict in FAILS for decision in decisions):
+    faults = faults_in_words(found.result, found.started_at)
+    said, away = recording_in_words(found.result, decisions, faults), ""
+    if not faults and any(decision.verdict in FAILS for decision in decisions):
+        away = far_from_reference(celsius, found.reference.residuals)
+    if away:
         said = joined(" ", (said, away))
         decisions = tuple(
             replace(decision, verdict=Verdict.UNDECIDABLE) if decision.verdict in FAILS else decision
             for decision in decisions
         )
-    return Judged(moved, decisions, said, is_reference=False)
+    return Judged(moved, decisions, said, is_reference=False, faults=faults)
 
 
 def _decisions(judgements: Iterable[ParameterJudgement], rule: str, unit_type: UnitType) -> tuple[Decision, ...]:

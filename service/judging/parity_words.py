@@ -4,7 +4,17 @@ from collections.abc import Iterator
 
 from estimator.message import capitalised, joined, say
 from estimator.parity import ParityResult
-from service.judging.words import CHANGED, MOST_CANDIDATES, SAME, TOO_MUCH_MOTION, clipped_in_words, stillness
+from estimator.parity.results import FULL_SCALE, STUCK, ZERO
+from service.judging.words import (
+    CHANGED,
+    MOST_CANDIDATES,
+    SAME,
+    TOO_MUCH_MOTION,
+    clipped_in_words,
+    found_in_words,
+    stillness,
+    within,
+)
 from service.kit.measures import number
 from service.sessions.words.readings import FitWords
 
@@ -19,6 +29,8 @@ ONE_ORIENTATION = (
 )
 SMALLEST = 1e-4
 """Probability below which its size says no more."""
+SILENT = (STUCK, ZERO, FULL_SCALE)
+"""Of a sensor that says nothing any more; where too few others are left, it still stands in the part after."""
 PER_SENSOR = 4
 """Numbers of a sensor that can change: scale, bias and two turns of its axis."""
 
@@ -28,7 +40,7 @@ def agreement_in_words(result: ParityResult) -> FitWords:
     chance = "less than 0.01" if result.p_value < SMALLEST else number(100 * result.p_value, 1)
     quiet = TOO_MUCH_MOTION if result.moving else SAME
     return FitWords(
-        headline=say("{result}.", result=CHANGED if result.detected else quiet),
+        headline=say("{result}.", result=CHANGED if result.detected or result.faults else quiet),
         detail=say(
             "χ² = {chi2} for {dof} numbers; an unchanged block gives this much or more in {chance} % of recordings.",
             chi2=number(result.chi2, 1),
@@ -37,6 +49,33 @@ def agreement_in_words(result: ParityResult) -> FitWords:
         ),
         warnings=tuple(_warnings(result)),
     )
+
+
+def parts_in_words(result: ParityResult) -> tuple[str, ...]:
+    """What parity says of the part before a sensor fails, and of the part after; none where none does."""
+    if not result.faults:
+        return ()
+    kept = {sensor.name for sensor in result.after.sensors} if result.after is not None else set()
+    left_out = joined(", ", (sensor.name for sensor in result.sensors if sensor.name not in kept))
+    is_blind = any(fault.kind in SILENT and fault.sensor in kept for fault in result.faults)
+    after = None if is_blind else result.after
+    without = say(", without {sensors}", sensors=left_out) if after is not None and left_out else ""
+    lines = (
+        say("Before that: {found}.", found=_of_part(result.before, "no change since the calibration")),
+        say(
+            "From then on{without}: {found}.",
+            without=without,
+            found=_of_part(after, "nothing else has changed since the calibration"),
+        ),
+    )
+    return lines if result.faults[0].since > 0 else lines[1:]
+
+
+def _of_part(part: ParityResult | None, quiet: str) -> str:
+    """``quiet`` where nothing was found."""
+    if part is None:
+        return "too little to be judged"
+    return within(found_in_words(part)) if part.detected or part.moving else quiet
 
 
 def _warnings(result: ParityResult) -> Iterator[str]:

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from estimator.parity import ParityResult
 from estimator.parity.results import Sight
+from service.judging.parity_words import parts_in_words
 from service.kit.measures import in_words
 
 PARAMETERS = ("bias", "scale", "axis")
@@ -27,6 +28,8 @@ class ParityView:
     level: str
     parameters: tuple[str, ...]
     rows: tuple[SightRow, ...]
+    parts: tuple[str, ...]
+    """What it says of the parts before and after a sensor fails."""
 
 
 def parity_view(result: ParityResult) -> ParityView:
@@ -39,7 +42,7 @@ def parity_view(result: ParityResult) -> ParityView:
         )
         for sensor in result.sensors
     )
-    return ParityView(f"{100 * result.false_alarm:g} %", PARAMETERS, rows)
+    return ParityView(f"{100 * result.false_alarm:g} %", PARAMETERS, rows, parts_in_words(result))
 
 
 def _limit(kind: str, parameter: str, sight: Sight) -> str:

@@ -12,6 +12,7 @@ from estimator.results import Calibration
 from service.diagnosis.words.causes import cause_on, choice_of
 from service.diagnosis.words.findings import MIXED_UP
 from service.fleet.condition import UnitSummary
+from service.judging.fault_words import said_of
 from service.judging.temperature_words import at_about, in_degrees, law_in_words
 from service.kit.measures import (
     COVERAGE,
@@ -23,7 +24,7 @@ from service.kit.measures import (
     measured,
     number,
 )
-from service.sessions.decision import Decision, Opening, Verdict, worst_of
+from service.sessions.decision import Decision, Opening, ServiceFault, Verdict, worst_of
 from service.sessions.doubt import Reservations
 from service.sessions.words.advice import left_open
 from service.sessions.words.conditions import Condition, but, condition_of
@@ -229,8 +230,12 @@ LEAST_SHARE = 1e-3
 """Of the samples, below which the share itself says no more."""
 
 
-def recording_in_words(result: ParityResult, decisions: tuple[Decision, ...]) -> str:
+def recording_in_words(
+    result: ParityResult, decisions: tuple[Decision, ...], faults: tuple[ServiceFault, ...] = ()
+) -> str:
     """What was found, and what could not have been."""
+    if faults:
+        return said_of(faults)
     found = found_in_words(result)
     unseen = [d for d in decisions if d.verdict is Verdict.UNDECIDABLE]
     if not decisions:
@@ -250,7 +255,7 @@ def recording_in_words(result: ParityResult, decisions: tuple[Decision, ...]) ->
 
 
 def found_in_words(result: ParityResult) -> str:
-    """What was found, without its full stop."""
+    """What was found, faults apart, without its full stop."""
     if result.moving:
         return say(
             "{too_much_motion}: the sensors disagree, possibly because of lever arms, delays between channels or "

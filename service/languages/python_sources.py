@@ -12,6 +12,7 @@ SILENT_CALLS = frozenset(
     (
         *("Field", "Query", "Path", "Header", "Body", "Option", "Argument", "Tag", "TypeVar", "NewType", "compile"),
         *("getLogger", "info", "warning", "debug", "exception", "AssertionError", "execute", "text", "add_argument"),
+        "names_on_demand",
     )
 )
 """Calls whose texts are for programs and programmers."""

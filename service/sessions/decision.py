@@ -9,6 +9,7 @@ from estimator.coverage import nominal_factor
 from estimator.health import ParameterJudgement
 from estimator.health.common_motion import CommonMotion
 from estimator.health.temperature_law import Steps
+from estimator.message import capitalised, say
 from estimator.results import COVERAGE, Calibration
 
 
@@ -87,6 +88,25 @@ def badness(decision: Decision) -> tuple[int, float]:
 
 
 @dataclass(frozen=True)
+class ServiceFault:
+    """A sensor that fails within a recording in service, in words."""
+
+    sensors: tuple[str, ...]
+    """Those that are out of tolerance: it, both that are exchanged, or each that could be it."""
+    place: str
+    """The sensor; empty where it is not one alone."""
+    what: str
+    """What it does, since when, and how large that is, as a clause."""
+    remedy: str
+    """What to do about it, as a clause."""
+
+    @property
+    def sentence(self) -> str:
+        """Both."""
+        return say("{what}: {remedy}.", what=capitalised(self.what), remedy=self.remedy)
+
+
+@dataclass(frozen=True)
 class Judged:
     """A session on its way into the store."""
 
@@ -97,10 +117,14 @@ class Judged:
     """Whether later sessions are judged against it."""
     motions: tuple[CommonMotion, ...] = ()
     """What all sensors did together since the reference."""
+    faults: tuple[ServiceFault, ...] = ()
+    """Sensors that fail within a recording in service."""
 
     @property
     def verdict(self) -> Verdict:
-        """That of the worst decision."""
+        """That of the worst decision; with a faulty sensor the unit fails, whatever has a tolerance."""
+        if self.faults:
+            return Verdict.FAIL
         return Verdict.UNDECIDABLE if self._worst is None else self._worst.verdict
 
     @property

@@ -53,6 +53,7 @@ def gross_finding(reading: SetAside, session: CalibrationSession) -> Finding:
         ranking=(Rival(OUTLIER.identifier, (reading.sensor,), 1.0, reading.strength),),
     )
 
+
 SCALED = (
     "All scale factors{of_kind} changed together by {change} % since the earlier sessions, more than gravity, latitude "
     "or a clock can do."

@@ -34,7 +34,8 @@ from service.models.records import ModelRevision
 from service.pages.unit.remarks import Remarks
 from service.papers.certified import SessionReport
 from service.papers.records import Traceability
-from service.sessions.charts import ChartSet, noise_of, residual_charts
+from service.sessions.charts import ChartSet, noise_of
+from service.sessions.course_charts import charts_of_fit
 from service.sessions.curve_charts import curve_charts
 from service.sessions.decision import Decision, Verdict, nominal_factor_of
 from service.sessions.doubt import Remedies, Reservations
@@ -171,7 +172,7 @@ def session_page(
         parity=None if parity is None else parity_view(parity),
         curves=curves_in_words(calibration),
         curve_charts=curve_charts(calibration),
-        charts=residual_charts(calibration),
+        charts=charts_of_fit(calibration),
         bands=bands_in_words(calibration, noise.times),
         residuals=residual_table(calibration),
         method=method_name(calibration.method),

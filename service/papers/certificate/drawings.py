@@ -8,7 +8,8 @@ from service.languages.language import Language
 from service.outlook.charts import history_charts, tracks_of
 from service.papers.certified import CertifiedSession
 from service.papers.typeset import picture
-from service.sessions.charts import ChartSet, residual_charts
+from service.sessions.charts import ChartSet
+from service.sessions.course_charts import charts_of_fit
 from service.sessions.decision import Decision
 
 MOST_HISTORIES = 6
@@ -54,15 +55,11 @@ def _rank(decision: Decision) -> float:
 
 
 def residuals_of(found: CertifiedSession, language: Language) -> tuple[Drawing, ...]:
-    """Against the angle of the head on a stand, else in the order measured."""
-    chart_sets = residual_charts(found.report.calibration)
-    abscissas = {charts.name.rpartition("-")[2] for charts in chart_sets}
-    abscissa = "beta" if "beta" in abscissas else "order"
+    """Against the angle of the head on a stand, the course of a recording in service, else in the order measured."""
+    chart_sets = charts_of_fit(found.report.calibration)
+    first = chart_sets[0].name.rpartition("-")[2] if chart_sets else ""
     selected = [
-        (charts, place)
-        for charts in chart_sets
-        if charts.name.endswith(abscissa)
-        for place in range(len(charts.panels))
+        (charts, place) for charts in chart_sets if charts.name.endswith(first) for place in range(len(charts.panels))
     ]
     return tuple(
         _drawing(charts, place, charts.panels[place].title, language) for charts, place in selected[:MOST_RESIDUALS]

@@ -8,6 +8,7 @@ from estimator.health.parity import judge_parity
 from estimator.session import IN_SERVICE
 from service.ingest.checked import Checked, as_checked, check
 from service.judging.calibrate import Calibrated, CalibrationBasis, calibrate
+from service.judging.fault_words import faults_in_words
 from service.judging.judge import as_decisions
 from service.judging.words import first_in_words, reason, recording_in_words
 from service.papers.certified import ReferenceSession, SessionReport, StatedSession
@@ -16,7 +17,7 @@ from service.papers.dcc.inputs import RecomputationInputs
 from service.papers.verifying.records import RawFile
 from service.papers.verifying.stated import Printed
 from service.papers.words import traceability
-from service.sessions.decision import Decision, Judged, Opening
+from service.sessions.decision import Decision, Judged, Opening, ServiceFault
 from service.sessions.records import ID_DIGITS, StoredSession
 from service.sessions.words.advice import too_few
 from service.sessions.words.conditions import condition_of
@@ -79,7 +80,9 @@ def _record(
     raw: RawFile, found: Calibrated, inputs: RecomputationInputs, decisions: tuple[Decision, ...], printed: Printed
 ) -> StoredSession:
     source = found.checked.session
-    why = _reason(found, decisions) if not inputs.is_reference else _opening(found, printed)
+    faults = _faults(found)
+    why = _reason(found, decisions, faults) if not inputs.is_reference else _opening(found, printed)
+    judged = Judged(found.calibration, decisions, why, is_reference=inputs.is_reference, faults=faults)
     return StoredSession(
         id=raw.sha256[:ID_DIGITS],
         unit=source.unit,
@@ -92,7 +95,7 @@ def _record(
         notes=source.notes,
         started_at=found.checked.measured_at,
         uploaded_at=found.checked.measured_at,
-        verdict=Judged(found.calibration, decisions, why, is_reference=inputs.is_reference).verdict,
+        verdict=judged.verdict,
         reason=why,
         is_reference=inputs.is_reference,
         simulated=source.is_simulated,
@@ -100,9 +103,14 @@ def _record(
     )
 
 
-def _reason(found: Calibrated, decisions: tuple[Decision, ...]) -> str:
+def _faults(found: Calibrated) -> tuple[ServiceFault, ...]:
+    beside = found.comparison
+    return () if beside is None else faults_in_words(beside.result, beside.started_at)
+
+
+def _reason(found: Calibrated, decisions: tuple[Decision, ...], faults: tuple[ServiceFault, ...]) -> str:
     if found.comparison is not None:
-        return recording_in_words(found.comparison.result, decisions)
+        return recording_in_words(found.comparison.result, decisions, faults)
     return reason(decisions, too_few(found.calibration))
 
 

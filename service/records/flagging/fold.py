@@ -41,6 +41,7 @@ from service.units.store import Units
 PASSES = (Verdict.PASS, Verdict.CONDITIONAL_PASS)
 """Verdicts that speak for resolving one."""
 WITHIN = "The session of {day} finds every parameter of {sensor} within its tolerance."
+ALL_WITHIN = "The session of {day} finds every sensor within its tolerance."
 NEW_REFERENCE = "{sensor} is now judged against the session of {day}."
 
 
@@ -55,11 +56,14 @@ def tell_verdict(store: Store, occasion: Occasion, latest: StoredSession, was: R
 
 
 def verdict_evidence(measured_at: datetime, judged: Judged) -> FlagEvidence:
-    """One concern a sensor that is out of tolerance; a sensor that is wholly within it is clear, and every sensor of a
-    new reference."""
+    """One concern a sensor that is out of tolerance or fails within the session; a sensor that is wholly within it is
+    clear, and every sensor of a new reference."""
     day = day_of(measured_at)
-    concerns, clear = [], []
+    concerns, clear = [*_fault_concerns(judged)], []
+    at_fault = {sensor for fault in judged.faults for sensor in fault.sensors}
     for sensor, decisions in _by_sensor(judged).items():
+        if sensor in at_fault:
+            continue
         failed = tuple(d for d in decisions if d.verdict in FAILS)
         if failed:
             concerns.append(_verdict_concern(sensor, failed, judged))
@@ -67,7 +71,16 @@ def verdict_evidence(measured_at: datetime, judged: Judged) -> FlagEvidence:
             clear.append((Matter.TOLERANCE.value, sensor, say(NEW_REFERENCE, day=day, sensor=sensor)))
         elif decisions and all(d.verdict in PASSES for d in decisions):
             clear.append((Matter.TOLERANCE.value, sensor, say(WITHIN, day=day, sensor=sensor)))
+    if len(clear) == len(judged.calibration.sensors) and not judged.is_reference:
+        clear.append((Matter.TOLERANCE.value, "", say(ALL_WITHIN, day=day)))
     return FlagEvidence(tuple(concerns), tuple(clear))
+
+
+def _fault_concerns(judged: Judged) -> Iterator[Concern]:
+    """One a sensor; of the unit as a whole where no single one is named."""
+    for place in dict.fromkeys(fault.place for fault in judged.faults):
+        said = joined(" ", (fault.sentence for fault in judged.faults if fault.place == place))
+        yield Concern(Matter.TOLERANCE, place, Verdict.FAIL.severity, said)
 
 
 def _by_sensor(judged: Judged) -> dict[str, list[Decision]]:

@@ -1,12 +1,13 @@
 """What a recording in service says of each parameter: four states for candidates, detectable or not for the others."""
 
+from dataclasses import replace
 from functools import cache
 
 import pytest
 
 from estimator.health import ParameterJudgement
 from estimator.health.parity import judge_parity
-from estimator.parity import parity_check
+from estimator.parity import CourseFault, ParityResult, parity_check
 from estimator.session import ACCELEROMETER
 from tests.estimator.parity.cases import biased, block, recording
 
@@ -78,3 +79,34 @@ def test_a_scale_moves_relative_to_its_reference_and_an_axis_from_zero() -> None
     scale, axis = judge_parity(found, reference, {(ACCELEROMETER, p): 1e-3 for p in ("scale", "axis")})[:2]
     assert scale.value == pytest.approx((scale.reference or 0) * (1 + (scale.deviation or 0)))
     assert (axis.reference, axis.value) == (0.0, axis.deviation)
+
+
+STUCK = CourseFault("A2", ("A2",), "stuck", 60.0, None, 0.1, None, None, 1e-9)
+
+
+def with_faults(*faults: CourseFault, before: ParityResult | None) -> dict[str, ParameterJudgement]:
+    """The biases of a sound block of six in which some fail, by sensor."""
+    found = replace(parity_check(recording(block(6)[0], seconds=120.0), block(6)[1]), faults=faults, before=before)
+    return {j.sensor: j for j in judge_parity(found, block(6)[1], {(ACCELEROMETER, "bias"): 1e-2})}
+
+
+def sound() -> ParityResult:
+    """The part before."""
+    return parity_check(recording(block(6)[0], seconds=60.0), block(6)[1])
+
+
+def test_a_sensor_that_fails_within_the_recording_fails_and_the_others_are_judged_by_the_part_before() -> None:
+    found = with_faults(STUCK, before=sound())
+    assert (found["A2"].verdict, found["A2"].deviation, found["A2"].expanded) == ("fail", None, None)
+    assert {found[name].verdict for name in found if name != "A2"} == {"pass"}
+    assert found["A1"].deviation == sound().sensor("A1").bias.size
+
+
+def test_all_that_could_be_the_failing_one_fail() -> None:
+    found = with_faults(replace(STUCK, sensor=None, suspects=("A2", "A5")), before=sound())
+    assert {name for name in found if found[name].verdict == "fail"} == {"A2", "A5"}
+
+
+def test_without_a_part_before_nothing_is_known_of_the_others() -> None:
+    found = with_faults(STUCK, before=None)
+    assert (found["A2"].verdict, found["A1"].verdict, found["A1"].value) == ("fail", "undecidable", None)

@@ -15,6 +15,7 @@ from service.ingest.jobs import HEAD, recording
 from service.ingest.stream import open_recording
 from service.kit import limits
 from tests.service.commands.conftest import Run
+from tests.service.faulty_recordings import faulty_bytes
 from tests.service.made_sessions import session_bytes
 from tests.service.recordings import recording_bytes, recording_document
 
@@ -46,6 +47,21 @@ def test_a_drift_is_told_in_a_sentence(run: Run, tmp_path: Path, reference: Path
     flight.write_bytes(recording_bytes(a3_moved=400.0))
     done = run("parity", flight, "--reference", reference)
     assert "A3 has changed since the calibration: bias +4" in done.out
+
+
+def test_a_sensor_that_begins_to_fail_is_told_with_its_second_and_what_to_do(
+    run: Run, tmp_path: Path, reference: Path
+) -> None:
+    flight = tmp_path / "flight.json"
+    flight.write_bytes(faulty_bytes("stuck"))
+    done, document = (
+        run("parity", flight, "--reference", reference),
+        run("parity", flight, "--reference", reference, "--json"),
+    )
+    said = " ".join(done.out.split())
+    assert "A3 has stood still since 09:02:00 UTC (120 s into the recording): replace or repair A3, and check" in said
+    assert "Before that: no change since the calibration. From then on, without A3: nothing else has" in said
+    assert (done.code, json.loads(document.out)["faults"][0]["kind"]) == (0, "stuck")
 
 
 @pytest.mark.parametrize("suffix", ["csv", "parquet"])

@@ -149,7 +149,7 @@ def test_a_recording_in_service_is_no_calibration(client: httpx.Client) -> None:
     sent(client, session_bytes())
     text = text_of(certificate(client, sent(client, recording_bytes())["id"]))
     assert ("Check in service" in text, "Calibration certificate" in text) == (True, False)
-    assert "parity/1" in text
+    assert "parity/2" in text
 
 
 def test_an_unknown_session_is_not_found(client: httpx.Client) -> None:
