@@ -50,7 +50,9 @@ def test_elements_that_are_not_free_stay_as_they_are() -> None:
     assert found.covariance[0, 0] > 0
 
 
-@pytest.mark.parametrize(("gyros", "stated", "rest"), [(0, False, -80 + 3), (0, True, 0), (3, False, -80 + 3), (3, True, 0)])
+@pytest.mark.parametrize(
+    ("gyros", "stated", "rest"), [(0, False, -80 + 3), (0, True, 0), (3, False, -80 + 3), (3, True, 0)]
+)
 def test_degrees_of_freedom_are_readings_less_unknowns(gyros: int, stated: bool, rest: int) -> None:
     """Two turns a setting where no direction is stated; three of them are a turn of the whole, which changes nothing."""
     rows, state = rows_and_state(gyros=gyros, stated=stated, settings=40)
@@ -62,8 +64,12 @@ def test_degrees_of_freedom_are_readings_less_unknowns(gyros: int, stated: bool,
 
 def test_of_gyros_alone_only_their_biases_are_unknown() -> None:
     rows, state = rows_and_state(gyros=3, settings=40)
-    part = replace(rows, y=rows.y[:, 4:], sigma=rows.sigma[:, 4:], nominal_axes=rows.nominal_axes[4:], gyro=rows.gyro[4:])
-    state = replace(state, scale=state.scale[4:], bias=state.bias[4:], quadratic=state.quadratic[4:], axes=state.axes[4:])
+    part = replace(
+        rows, y=rows.y[:, 4:], sigma=rows.sigma[:, 4:], nominal_axes=rows.nominal_axes[4:], gyro=rows.gyro[4:]
+    )
+    state = replace(
+        state, scale=state.scale[4:], bias=state.bias[4:], quadratic=state.quadratic[4:], axes=state.axes[4:]
+    )
     free = free_of(rows, 3)[4:]
     assert search(part, state, free).dof == 80 * 3 - 9
     assert is_determined(part, state, free)
@@ -76,7 +82,9 @@ def test_what_the_fit_leaves_of_all_readings_is_its_degrees_of_freedom(stated: b
     rows, state = rows_and_state(stated=stated, settings=40)
     rows = replace(rows, prior=rows.prior * 1e-6)
     found = search(rows, state, free_of(rows, 0))
-    assert found.redundancy.sum() == pytest.approx(320 - found.free.sum() - 80 + 3 * (not stated), abs=3.1 * stated + 0.01)
+    assert found.redundancy.sum() == pytest.approx(
+        320 - found.free.sum() - 80 + 3 * (not stated), abs=3.1 * stated + 0.01
+    )
     assert (found.redundancy < 80).all()
 
 

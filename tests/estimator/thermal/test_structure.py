@@ -144,7 +144,9 @@ def test_a_lag_is_found_with_its_sign_and_time_constant(lag: float, tau: float) 
 def test_a_lag_beside_a_loop_is_found_too() -> None:
     result, _ = found(Still(soaks=SLOW, each=6, loop=0.02, lag=1e-3, tau=2500.0))
     assert result.thermal is not None
-    assert {(f.kind, f.sensor) for f in result.thermal.findings} >= {(k, f"A{i}") for i in (1, 2, 3) for k in (LAG, HYSTERESIS)}
+    assert {(f.kind, f.sensor) for f in result.thermal.findings} >= {
+        (k, f"A{i}") for i in (1, 2, 3) for k in (LAG, HYSTERESIS)
+    }
 
 
 def test_where_the_temperature_only_rises_there_is_no_loop_to_find() -> None:
@@ -194,4 +196,3 @@ def test_a_wave_that_no_polynomial_follows_is_a_misfit_of_its_size(parameter: st
     assert one.amplitude == pytest.approx((3e-3 if parameter == "bias" else 3e-4 * 0.12) / np.sqrt(2), rel=0.35)
     curve = getattr(result.thermal.sensor("A2"), parameter)
     assert curve.scatter == pytest.approx(one.amplitude)
-
