@@ -10,11 +10,11 @@ from hypothesis.stateful import initialize, invariant, run_state_machine_as_test
 
 from tests.databases import Databases
 from tests.lives.again import same_of_the_backup, same_of_the_records
+from tests.lives.faults import Faults
 from tests.lives.invariants import log_is_clean, look_around, pages_agree, walk
 from tests.lives.quiet import wait_until_quiet
 from tests.lives.records import Records
 from tests.lives.service import Service
-from tests.lives.uploads import Uploads
 from tests.lives.works import Works
 from tests.lives.world import World, opened
 from tests.service.receiver import receiver
@@ -46,7 +46,7 @@ RESTORED = replace(SHORT, ends=(same_of_the_backup,))
 """As short, with the other end."""
 
 
-class Life(Uploads, Records, Works):
+class Life(Faults, Records, Works):
     """A service's life, step by step."""
 
     @initialize(drawn=st.integers(0, 2**32))
