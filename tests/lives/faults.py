@@ -108,7 +108,7 @@ class Faults(Uploads):
         for point in self.world.get(path, params={"limit": 10000})["points"]:
             if point["session"] == receipt["id"] and point["sensor"] in {sensor.name for sensor in right.sensors}:
                 sensor = right.sensor(point["sensor"])
-                by = off(_recorded(point, sensor), sensor, point["parameter"])
+                by = off(recorded(point, sensor), sensor, point["parameter"])
                 self.expect(by <= WITHIN, f"{what}: {point['sensor']} {point['parameter']} is off by {by:.1f} u")
 
     def _recording(self, number: int) -> Document:
@@ -153,7 +153,7 @@ def off(found: SensorCalibration, right: SensorCalibration, parameter: str) -> f
     return float(abs(one.value - other.value) / other.sigma)
 
 
-def _recorded(point: dict[str, Any], like: SensorCalibration) -> SensorCalibration:
+def recorded(point: dict[str, Any], like: SensorCalibration) -> SensorCalibration:
     """A sensor with one parameter as it is on record."""
     if point["parameter"] == "axis":
         return replace(like, axis=None if point["axis"] is None else np.array(point["axis"]))

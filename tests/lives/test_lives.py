@@ -6,6 +6,7 @@ import pytest
 
 from tests.databases import Databases
 from tests.lives.life import RESTORED, SHORT, Size, whole_life
+from tests.lives.twins import twin_life
 from tests.lives.world import FindError, World
 
 
@@ -20,3 +21,10 @@ def test_whatever_is_done_nothing_fails_and_the_state_follows_from_the_records(
         whole_life(databases, tmp_path, number, size, worlds.append)
     except FindError as find:
         pytest.fail("\n".join([str(find), *(line for world in worlds for line in world.journal)]))
+
+
+def test_what_was_set_aside_or_taken_back_moves_nothing(sqlite: Databases, tmp_path: Path) -> None:
+    try:
+        twin_life(sqlite, tmp_path, 5, 8)
+    except FindError as find:
+        pytest.fail(str(find))
