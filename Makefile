@@ -85,6 +85,7 @@ study: $(BENCH)
 	$(BIN)/python -m benchmarks.study.detection --sessions 84 --sound 400 --seed 2 --network build/neural.npz
 	$(BIN)/python -m benchmarks.study.amplitudes --sessions 660 --seed 3
 	$(BIN)/python -m benchmarks.study.open_world --sessions 12 --seed 1
+	$(BIN)/python -m benchmarks.study.seen --seed 1
 	$(BIN)/python -m benchmarks.study.groups --groups 300 --seed 8
 	$(BIN)/python -m benchmarks.study.between_sessions --units 40 --seed 1
 	$(BIN)/python -m benchmarks.study.with_history --groups 53 --seed 1

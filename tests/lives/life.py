@@ -10,11 +10,12 @@ from hypothesis.stateful import initialize, invariant, run_state_machine_as_test
 
 from tests.databases import Databases
 from tests.lives.again import same_of_the_backup, same_of_the_records
+from tests.lives.faults import Faults
 from tests.lives.invariants import log_is_clean, look_around, pages_agree, walk
 from tests.lives.quiet import wait_until_quiet
 from tests.lives.records import Records
 from tests.lives.service import Service
-from tests.lives.uploads import Uploads
+from tests.lives.steps import Steps
 from tests.lives.works import Works
 from tests.lives.world import World, opened
 from tests.service.receiver import receiver
@@ -46,7 +47,7 @@ RESTORED = replace(SHORT, ends=(same_of_the_backup,))
 """As short, with the other end."""
 
 
-class Life(Uploads, Records, Works):
+class Life(Faults, Records, Works):
     """A service's life, step by step."""
 
     @initialize(drawn=st.integers(0, 2**32))
@@ -65,18 +66,18 @@ class Life(Uploads, Records, Works):
         log_is_clean(self.world)
 
 
-def live(world: World, number: int, size: Size) -> None:
-    """So many steps by the seed of a number."""
-    machine = seed(number)(type("OneLife", (Life,), {"world": world}))
+def lived(machine: type[Steps], world: World, number: int, steps: int) -> None:
+    """So many steps of a machine, by the seed of a number."""
+    one = seed(number)(type("OneLife", (machine,), {"world": world}))
     chosen = settings(
         max_examples=1,
-        stateful_step_count=size.steps,
+        stateful_step_count=steps,
         phases=[Phase.generate],
         database=None,
         deadline=None,
         suppress_health_check=list(HealthCheck),
     )
-    run_state_machine_as_test(machine, settings=chosen)
+    run_state_machine_as_test(one, settings=chosen)
 
 
 def end(world: World, databases: Databases, folder: Path, size: Size) -> None:
@@ -97,7 +98,7 @@ def whole_life(databases: Databases, folder: Path, number: int, size: Size, seen
         with receiver() as hook, opened(Service(url, folder / "life", (hook.host, NOBODY)), number) as world:
             seen(world)
             world.is_short = not size.prints
-            live(world, number, size)
+            lived(Life, world, number, size.steps)
             end(world, databases, folder, size)
     finally:
         databases.drop(url)

@@ -79,7 +79,8 @@ class Uploads(Steps):
         names = [sensor["name"] for sensor in document["sensors"]][: 1 if factor < 0 else None]
         for name in names:
             document["table"][name] = [cell * factor for cell in document["table"][name]]
-        self.upload(written(document, "json"), "slip.json")
+        if receipt := self.upload(written(document, "json"), "slip.json"):
+            self.world.rescaled.add(receipt["unit"])
 
     @rule(serial=st.sampled_from(BENCHES), wrong=st.sampled_from(WRONG))
     def sends_what_cannot_be_used(self, serial: str, wrong: str) -> None:

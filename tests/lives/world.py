@@ -45,6 +45,8 @@ class World:
     """Acknowledged uploads by their session's id."""
     typeless: set[str] = field(default_factory=set)
     """Sessions whose files name no type of unit."""
+    rescaled: set[str] = field(default_factory=set)
+    """Units of which some file reads all in another unit or range."""
     chosen: list[str] = field(default_factory=list)
     """Sessions that were made references, in that order."""
     journal: list[str] = field(default_factory=list)
