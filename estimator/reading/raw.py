@@ -1,6 +1,7 @@
 """The rows of a raw log, screened: what they read, when, and at what rate they were taken."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -45,6 +46,7 @@ def read_raw(
     screen: Screen | None,
 ) -> Raw:
     """Records what cannot be corrected. A ``part`` of a longer log without its ``screen`` is taken as it stands."""
+    sensors = tuple(sensor for sensor in sensors if sensor.name)
     rate = document.optional_number("sample_rate_hz", WITHIN["sample_rate_hz"])
     declined = _declined(document)
     time = columns.numbers("time_s", WITHIN["time_s"]) if columns.has("time_s") else None
@@ -101,7 +103,7 @@ def _found_rate(columns: Columns, time: Array | None, sensors: tuple[Sensor, ...
 
 def _samples(columns: Columns, sensors: tuple[Sensor, ...], *, holes: bool) -> Array:
     """(R, m) as they stand."""
-    names, within = [sensor.name for sensor in sensors if sensor.name], WITHIN["<sensor>"]
+    names, within = [sensor.name for sensor in sensors], WITHIN["<sensor>"]
     read = columns.samples if holes else columns.numbers
     for name in (name for name in names if not columns.has(name)):
         columns.report_missing(name)
@@ -112,8 +114,7 @@ def _samples(columns: Columns, sensors: tuple[Sensor, ...], *, holes: bool) -> A
 def _moved(columns: Columns) -> Array:
     """(R,) whether a row stands under another label than the one before."""
     moved = np.zeros(columns.rows, dtype=bool)
-    for name in LABELS:
-        if columns.has(name):
-            cells = np.array([str(cell) for cell in columns.values[name]])
-            moved[1:] |= cells[1:] != cells[:-1]
+    for cells in (columns.values[name] for name in LABELS if columns.has(name)):
+        is_array = isinstance(cells, np.ndarray)
+        moved[1:] |= cells[1:] != cells[:-1] if is_array else [a != b for a, b in pairwise(cells)]
     return moved

@@ -119,7 +119,7 @@ FAULTS = [
     (STAND, ["table", "time_ms"], [0.0] * 24, "time_ms", None, "time_s"),
     (STAND, ["table", "beta_deg", 3], None, "beta_deg", 4, "missing"),
     (STAND, ["table", "beta_deg", 3], 999, "beta_deg", 4, "is 999; must be from -720 to 720 degrees"),
-    (STAND, ["table", "time_s", 8], 400.0, "time_s", 9, "earlier"),
+    (STAND, ["table", "time_s", 8], 400.0, "time_s", 9, "split the file there"),
     (STAND, ["table", "temperature_c", 2], 293.15, "temperature_c", 3, "from -100 to 200"),
     (STAND, ["table", "A3"], ..., "A3", None, "missing"),
     (STAND, ["table", "A3"], 0.7, "A3", None, "must be a list"),
@@ -188,7 +188,7 @@ def test_all_faults_are_reported_at_once():
     document["table"]["A4_se"][0] = -1
     document["table"]["time_s"][20] = 0
     places = [(p.field, p.row) for p in problems_of(document)]
-    assert places == [("stand.alpha_deg", None), ("A2", 7), ("A4_se", 1), ("time_s", 21)]
+    assert places == [("stand.alpha_deg", None), ("time_s", 21), ("A2", 7), ("A4_se", 1)]
 
 
 @pytest.mark.parametrize("count", [0, 1, 2])

@@ -18,7 +18,7 @@ ZEROS = np.array([0.02, -0.007, 0.01])
 
 
 def samples(seed=0, noise=(0.02, 0.001), poses=10):
-    """(R, 6) counts of a triad of both kinds, held still in many orientations and turned between them; and the rests."""
+    """(R, 6) counts of a triad of both kinds, held still in orientations and turned between them; and the rests."""
     rng = np.random.default_rng(seed)
     up = rng.standard_normal((poses + 1, 3))
     up /= np.linalg.norm(up, axis=1, keepdims=True)

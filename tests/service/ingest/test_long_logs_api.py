@@ -117,13 +117,22 @@ def test_a_log_has_limits_too(few_cells, settings: Settings, name: str, most: in
 
 
 @one_engine
+def test_a_faulty_cell_is_named_with_its_row_of_the_whole_log(few_cells) -> None:
+    document = log()
+    document["table"]["A3"][11_000] = "1.7x"
+    answer = few_cells().post("/api/v1/sessions", content=csv_of(document))
+    problem = answer.json()["problems"][0]
+    assert (answer.status_code, problem["field"], problem["row"]) == (422, "A3", 11_001)
+
+
+@one_engine
 @pytest.mark.parametrize("kind", WRITERS)
-def test_a_faulty_cell_is_named_with_its_row_of_the_whole_log(few_cells, kind: str) -> None:
+def test_a_cell_without_a_number_is_left_out_of_the_whole_log(few_cells, kind: str) -> None:
     document = log()
     document["table"]["A3"][11_000] = float("inf") if kind == "parquet" else "n/a"
     answer = few_cells().post("/api/v1/sessions", content=WRITERS[kind](document))
-    problem = answer.json()["problems"][0]
-    assert (answer.status_code, problem["field"], problem["row"]) == (422, "A3", 11_001)
+    assert answer.status_code == 201
+    assert answer.json()["remark"].startswith("No reading in 1 row (11001) of A3")
 
 
 @one_engine
