@@ -13,7 +13,7 @@ from estimator.reading.keys import DIRECTIONS
 from estimator.reading.problems import shown
 from estimator.screening import KINDS, OFF, Screen, Screening, declined_by
 from estimator.screening.clock import MOST_POSITIONS, no_rate, rate_of
-from estimator.session import ARBITRARY_ORIENTATIONS, RATE_TABLE, ROTATION_ALIGNMENT, Array, Sensor
+from estimator.session import ARBITRARY_ORIENTATIONS, IN_SERVICE, RATE_TABLE, ROTATION_ALIGNMENT, Array, Sensor
 
 LABELS = ("run", "beta_deg", "position", *DIRECTIONS)
 """Columns that say where the block stood."""
@@ -52,7 +52,7 @@ def read_raw(
     time = columns.numbers("time_s", WITHIN["time_s"]) if columns.has("time_s") else None
     is_alone = screen is None
     if screen is None:
-        screen = Screen(sensors, frozenset(KINDS if part else declined), rate)
+        screen = Screen(sensors, frozenset(KINDS if part else declined), rate, in_service=programme == IN_SERVICE)
     fault = columns.problems.add
     if is_alone and not part and rate is None and programme == ARBITRARY_ORIENTATIONS:
         screen.rate = rate = _found_rate(columns, time, sensors, screen)

@@ -8,8 +8,8 @@ Nothing here judges a sensor: a finding is of the recording. All of it can be de
 """
 
 from estimator.screening.findings import KINDS, OFF, Screening, declined_by
-from estimator.screening.screen import Screen
+from estimator.screening.screen import JUDGED_BY_PARITY, Screen
 from estimator.screening.wild import without_wild
 from estimator.session import ScreenFinding
 
-__all__ = ["KINDS", "OFF", "Screen", "ScreenFinding", "Screening", "declined_by", "without_wild"]
+__all__ = ["JUDGED_BY_PARITY", "KINDS", "OFF", "Screen", "ScreenFinding", "Screening", "declined_by", "without_wild"]

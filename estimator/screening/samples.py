@@ -158,6 +158,12 @@ def _leaping(x: Array, free: Mask, value: float, values: list[float], step: floa
     return found if len(found) >= (1 if value in MARKERS else AGAIN) else rows[:0]
 
 
+def longest_run(rows: Rows) -> int:
+    """Most of increasing ``rows`` (n,) that follow one another."""
+    runs = np.split(rows, np.flatnonzero(np.diff(rows) != 1) + 1)
+    return max(map(len, runs), default=0)
+
+
 def zero_vectors(x: Array, *, weighed: bool) -> Mask:
     """(R,) vectors of x (R, c) that are exactly 0 between others and hold no reading; ``weighed``: gravity shows in
     every one that does, however long they are."""

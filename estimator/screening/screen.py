@@ -12,6 +12,12 @@ from estimator.screening.clock import Clock, Fault
 from estimator.screening.findings import Screening, Seen, seen, together
 from estimator.session import ACCELEROMETER, GYROSCOPE, Array, Sensor
 
+JUDGED_BY_PARITY = frozenset({"frozen", "repeated"})
+"""Kinds that are not looked for in service: a channel that stands still there is a failing sensor, not a bad record."""
+
+BRIEF = 3
+"""Rows in a row that a marker of no data may fill in service: a channel at the end of its range for longer fails."""
+
 
 class Screen:
     """The readings of one raw file: R rows in all, m sensors.
@@ -19,6 +25,7 @@ class Screen:
     sensors : of the file.
     declined : kinds that are not to be looked for.
     rate : Hz; None of averaged positions.
+    in_service : whether what lasts is left to parity, which judges it as a failing sensor.
     signs : bits of the words without a sign, by kind of sensor, as `signs` of an earlier passage through the file.
     """
 
@@ -28,8 +35,11 @@ class Screen:
         declined: frozenset[str],
         rate: float | None,
         signs: dict[str, int] | None = None,
+        *,
+        in_service: bool = False,
     ) -> None:
-        self.sensors, self.rate, self._declined = sensors, rate, declined
+        self.sensors, self.rate, self._in_service = sensors, rate, in_service
+        self._declined = declined | JUDGED_BY_PARITY if in_service else declined
         self._clock: Clock | None = None
         self._timed = self._read = 0
         self.signs = dict(signs or {})
@@ -120,6 +130,8 @@ class Screen:
         if self.looks_for("no-data"):
             rows, x = _known(values[:, i])
             for value, none in samples.markers(x):
+                if self._in_service and (value not in samples.MARKERS or samples.longest_run(none) > BRIEF):
+                    continue
                 self.found += seen("no-data", name, rows[none], at, value)
                 values[rows[none], i] = np.nan
         rows, x = _known(values[:, i])

@@ -34,7 +34,7 @@ def recording(path: Path, filename: str) -> Iterator[object]:
     head = _head(rows, filename)
     yield head
     names = [sensor.name for sensor in head.sensors]
-    screen = Screen(head.sensors, frozenset(head.unscreened), head.sample_rate)
+    screen = Screen(head.sensors, frozenset(head.unscreened), head.sample_rate, in_service=True)
     for frame in _frames(rows, names, filename):
         yield frame.to_numpy() if head.sample_rate is None else screen.readings(frame.to_numpy())
 

@@ -3,7 +3,7 @@
 from datetime import timedelta
 
 from estimator.message import Message, capitalised, joined, say
-from estimator.moments import moment
+from estimator.moments import local_moment
 from estimator.parity import CourseFault, ParityResult
 from estimator.parity.results import (
     DELAY,
@@ -53,7 +53,7 @@ MILLISECONDS = Measure("ms", 1e3)
 
 
 def faults_in_words(result: ParityResult, started_at: str | None) -> tuple[ServiceFault, ...]:
-    """Every sensor that fails, the earliest first; ``started_at`` in UTC, None where the file does not say."""
+    """Every sensor that fails, the earliest first; ``started_at`` with the offset of the place, None where the file does not say."""
     return tuple(_in_words(fault, result, started_at) for fault in result.faults)
 
 
@@ -113,10 +113,11 @@ def _moment(at: float, sigma: float, result: ParityResult, started_at: str | Non
     into = say("{seconds} s into the recording", seconds=seconds)
     if started_at is None:
         return into
-    start = moment(started_at)
+    start = local_moment(started_at)
     clock = start + timedelta(seconds=at)
     day = "" if clock.date() == start.date() else say(" on {day}", day=day_of(clock))
-    return say("{time} UTC{day} ({into})", time=f"{clock:%H:%M:%S}", day=day, into=into)
+    zone = clock.isoformat()[-6:] if clock.utcoffset() else "UTC"
+    return say("{time} {zone}{day} ({into})", time=f"{clock:%H:%M:%S}", zone=zone, day=day, into=into)
 
 
 def said_of(faults: tuple[ServiceFault, ...]) -> str:

@@ -9,7 +9,8 @@ import numpy as np
 from estimator.errors import FormatError, Problem, problem_at
 from estimator.message import joined, say
 from estimator.reading.problems import Where, shown
-from estimator.screening import Screening, declined_by
+from estimator.screening import JUDGED_BY_PARITY, Screening, declined_by
+from estimator.session import IN_SERVICE
 from service.ingest.layout.grids import Cell, Grid, grid_of, is_nothing, number_of
 from service.ingest.layout.mapping import ColumnMapping, Layout
 from service.ingest.layout.vocabulary import conversion, target_label
@@ -24,7 +25,10 @@ DAY = 86_400.0
 
 def document_of(content: bytes, filename: str, layout: Layout) -> tuple[dict[str, object], Where, Screening]:
     """The session's document, a function from field and row to the cell in the file, and what a log's samples show."""
-    grid = grid_of(content, filename, layout.table, declined_by(layout.session.get("screening")) or ())
+    declined = declined_by(layout.session.get("screening")) or ()
+    if layout.session.get("programme") == IN_SERVICE:
+        declined = (*declined, *JUDGED_BY_PARITY, "no-data")
+    grid = grid_of(content, filename, layout.table, declined)
     problems = [*_other_columns(grid, layout), *_unit_problems(layout)]
     if problems:
         raise FormatError(problems, filename)
