@@ -22,7 +22,7 @@ from estimator.message import joined, say
 from estimator.rest_noise import Indices, waves
 from estimator.rest_tilt import MeanErrors, errors_of_means
 from estimator.screening import without_wild
-from estimator.screening.findings import Seen, seen, together
+from estimator.screening.findings import Sighting, seen, together
 from estimator.session import ACCELEROMETER, Array, CalibrationSession, Sensor
 
 WINDOW = 1.0
@@ -150,7 +150,7 @@ def without_stray(session: CalibrationSession, intervals: Intervals) -> Calibrat
     """The raw log without the samples that lie far from all others of their rest."""
     if "wild" in session.unscreened:
         return session
-    readings, found = session.readings, list[Seen]()
+    readings, found = session.readings, list[Sighting]()
     for a, b in zip(intervals.start.tolist(), intervals.stop.tolist(), strict=True):
         wild = without_wild(readings[a:b])
         if wild is not None:
@@ -160,7 +160,7 @@ def without_stray(session: CalibrationSession, intervals: Intervals) -> Calibrat
     return replace(session, readings=readings, screening=(*session.screening, *together(found))) if found else session
 
 
-def stray(sensors: tuple[Sensor, ...], wild: NDArray[np.bool_], at: int) -> list[Seen]:
+def stray(sensors: tuple[Sensor, ...], wild: NDArray[np.bool_], at: int) -> list[Sighting]:
     """What was ``wild`` (r, m) in the rows from ``at`` on."""
     channels = np.flatnonzero(wild.any(axis=0))
     return [item for i in channels for item in seen("wild", (sensors[i].name,), np.flatnonzero(wild[:, i]), at)]

@@ -14,7 +14,7 @@ from estimator.message import say
 from estimator.rest_noise import block_count, waves_of
 from estimator.rest_tilt import MeanErrors, errors_of_means
 from estimator.screening import without_wild
-from estimator.screening.findings import Seen, together
+from estimator.screening.findings import Sighting, together
 from estimator.screening.wild import BLOCK
 from estimator.session import ACCELEROMETER, Array, CalibrationSession, Sensor
 from estimator.static import (
@@ -54,7 +54,7 @@ class RowTally:
         self._range = np.array([[-np.inf, np.inf]]).repeat(m, axis=0)
         self._reached = np.empty((0, 2), np.intp)  # channels and ends that this part comes to
         self._missing = np.zeros((0, *self._sums.shape[1:]))  # of as many rests as sums, from the first that misses any
-        self._stray: list[Seen] = []
+        self._stray: list[Sighting] = []
         self._pending = np.empty((m + len(self._averaged), 0))  # of a rest, until a block of it is whole
         named = [name for name in SET if getattr(head, name) is not None]
         self._set: dict[str, Array] = {

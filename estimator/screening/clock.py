@@ -9,7 +9,7 @@ from collections.abc import Callable
 import numpy as np
 
 from estimator.message import say
-from estimator.screening.findings import Seen, plain, seen
+from estimator.screening.findings import Sighting, plain, seen
 from estimator.session import Array
 
 DAY = 86_400.0
@@ -59,7 +59,7 @@ class Clock:
         self.rate, self._declined, self._fault = rate, declined, fault
         self._added, self._last, self._per_unit, self._advanced = 0.0, np.nan, 1.0, False
 
-    def add(self, time: Array, at: int, moved: Array) -> tuple[Array, list[Seen]]:
+    def add(self, time: Array, at: int, moved: Array) -> tuple[Array, list[Sighting]]:
         """The times (R,) of the next rows, from row ``at`` on, and what was found; ``moved`` (R,) where a row stands in
         another position than the one before, so that its time may leap."""
         if at == 0 and self.rate is not None:
@@ -74,7 +74,7 @@ class Clock:
         self._last, self._advanced = time[-1], self._advanced or bool(np.ptp(time) > 0)
         return time, found
 
-    def _unit(self, time: Array) -> tuple[float, list[Seen]]:
+    def _unit(self, time: Array) -> tuple[float, list[Sighting]]:
         """How many times too fast the clock runs, by the stated rate."""
         step = usual_step(time)
         assert self.rate is not None
@@ -90,7 +90,7 @@ class Clock:
             self._fault("time_s", say(text, **parts), None)
         return 1.0, []
 
-    def _rolled(self, time: Array, at: int) -> tuple[Array, list[Seen]]:
+    def _rolled(self, time: Array, at: int) -> tuple[Array, list[Sighting]]:
         """With every fall mended that tells its range; the others are faults."""
         begin = np.append(self._last, time)
         steps = np.diff(begin)
@@ -135,7 +135,7 @@ class Clock:
             )
             self._fault("time_s", say(text, **parts), row)
 
-    def _uneven(self, time: Array, at: int, moved: Array) -> list[Seen]:
+    def _uneven(self, time: Array, at: int, moved: Array) -> list[Sighting]:
         """Doubled stamps, and gaps."""
         usual, steps = usual_step(time), np.diff(time, prepend=self._last if at else time[0] - 1)
         if usual == 0:

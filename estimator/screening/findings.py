@@ -58,7 +58,7 @@ TEMPLATES = {
 
 
 @dataclass(frozen=True)
-class Seen:
+class Sighting:
     """One kind of thing in some rows, counted from 0 within the whole file."""
 
     kind: str
@@ -69,11 +69,11 @@ class Seen:
     value: float | None = None
     """What the readings or the clock show; None where nothing is to be said of it."""
 
-    def beside(self, other: "Seen") -> "Seen":
+    def beside(self, other: "Sighting") -> "Sighting":
         """With the same thing of another part of the file."""
-        value = max(filter(None.__ne__, (self.value, other.value)), default=None)
+        value = max((v for v in (self.value, other.value) if v is not None), default=None)
         both = tuple(dict.fromkeys((*self.sensors, *other.sensors)))
-        return Seen(
+        return Sighting(
             self.kind, both, self.rows + other.rows, min(self.first, other.first), max(self.last, other.last), value
         )
 
@@ -102,20 +102,20 @@ def plain(value: float) -> str:
     return f"{value:.0f}" if value == np.floor(value) and abs(value) < 2**33 else f"{value:.10g}"
 
 
-def seen(kind: str, sensors: Iterable[str], rows: np.ndarray, at: int, value: float | None = None) -> list[Seen]:
+def seen(kind: str, sensors: Iterable[str], rows: np.ndarray, at: int, value: float | None = None) -> list[Sighting]:
     """The thing in ``rows`` (k,), numbers from 0 within a part that begins at row ``at``; nothing where none is."""
     if not len(rows):
         return []
-    return [Seen(kind, tuple(sensors), len(rows), at + int(rows[0]), at + int(rows[-1]), value)]
+    return [Sighting(kind, tuple(sensors), len(rows), at + int(rows[0]), at + int(rows[-1]), value)]
 
 
-def together(found: Iterable[Seen]) -> tuple[ScreenFinding, ...]:
+def together(found: Iterable[Sighting]) -> tuple[ScreenFinding, ...]:
     """Findings of one kind and value as one, sensors that share their rows too."""
-    sums: dict[tuple[str, tuple[str, ...], float | None], Seen] = {}
+    sums: dict[tuple[str, tuple[str, ...], float | None], Sighting] = {}
     for item in found:
         key = (item.kind, item.sensors, item.value if item.kind in ("no-data", "saturated") else None)
         sums[key] = sums[key].beside(item) if key in sums else item
-    shared: dict[tuple[object, ...], Seen] = {}
+    shared: dict[tuple[object, ...], Sighting] = {}
     for item in sums.values():
         alike = (item.kind, item.rows, item.first, item.last, item.value)
         same = shared.get(alike)

@@ -9,7 +9,7 @@ import numpy as np
 from estimator.message import say
 from estimator.screening import samples
 from estimator.screening.clock import Clock, Fault
-from estimator.screening.findings import Screening, Seen, seen, together
+from estimator.screening.findings import Screening, Sighting, seen, together
 from estimator.session import ACCELEROMETER, GYROSCOPE, Array, Sensor
 
 JUDGED_BY_PARITY = frozenset({"frozen", "repeated"})
@@ -43,9 +43,9 @@ class Screen:
         self._clock: Clock | None = None
         self._timed = self._read = 0
         self.signs = dict(signs or {})
-        self.found: list[Seen] = []
+        self.found: list[Sighting] = []
         kinds = sorted(range(len(sensors)), key=lambda i: sensors[i].kind)
-        self._kinds = {kind: list(group) for kind, group in groupby(kinds, lambda i: sensors[i].kind)}
+        self._kinds = {kind: np.array(list(group)) for kind, group in groupby(kinds, lambda i: sensors[i].kind)}
         self._constant: dict[int, float | None] = {}
 
     def looks_for(self, kind: str) -> bool:
@@ -100,7 +100,7 @@ class Screen:
                 self.found += seen("missing", (sensor.name,), none, at)
                 values[none, i] = np.nan
 
-    def _signs(self, values: Array, kind: str, channels: list[int], at: int) -> None:
+    def _signs(self, values: Array, kind: str, channels: Array, at: int) -> None:
         """Reads the words of a kind with their sign, where one channel shows that they lost it."""
         words = {i: values[:, i] for i in channels if np.fmin.reduce(values[:, i], initial=np.inf) >= 0}
         units = {i: samples.unit_of(x[np.isfinite(x)]) for i, x in words.items()}
@@ -118,7 +118,7 @@ class Screen:
             self.found += seen("sign-lost", (self.sensors[i].name,), high, at, wrap)
             values[high, i] -= wrap
 
-    def _vectors(self, what: str, values: Array, channels: list[int], at: int, of: Callable[[Array], Array]) -> None:
+    def _vectors(self, what: str, values: Array, channels: Array, at: int, of: Callable[[Array], Array]) -> None:
         rows = np.flatnonzero(np.isfinite(values[:, channels]).all(axis=1))
         left = rows[of(values[np.ix_(rows, channels)])]
         if len(left):
@@ -152,7 +152,7 @@ class Screen:
         """Records channels that hold nothing in the whole file."""
         if not self.looks_for("frozen"):
             return
-        felt = self._kinds.get(ACCELEROMETER, [])
+        felt = list(self._kinds.get(ACCELEROMETER, ()))
         dead = [i for i in felt if self._constant.get(i) is not None]
         for i in dead if len(dead) < len(felt) else []:
             text = (

@@ -338,7 +338,7 @@ NO_RATE = ("no rate", "no rate, rounded time", "milliseconds", "doubled rows")
 
 
 @dataclass(frozen=True)
-class Drawn:
+class DrawnFile:
     """One file and what came of it."""
 
     fault: str
@@ -380,7 +380,7 @@ def worst_of(session: CalibrationSession, case: Case, path: str) -> float:
     return float(max(offs))
 
 
-def drawn(fault: str, path: str, rng: np.random.Generator) -> Drawn:
+def drawn(fault: str, path: str, rng: np.random.Generator) -> DrawnFile:
     """One file of a new block."""
     made = world(rng)
     case = Case(made, rng, np.round(made.counts), made.time, RATE, bool(rng.random() < 0.5))
@@ -390,13 +390,13 @@ def drawn(fault: str, path: str, rng: np.random.Generator) -> Drawn:
         worst = worst_of(session, case, path)
         kinds = tuple(sorted({f.kind for f in calibrate(session).screening}))
     except SessionError as refused:
-        return Drawn(fault, path, "refused", said=str(refused)[:160])
+        return DrawnFile(fault, path, "refused", said=str(refused)[:160])
     if worst <= 3:
-        return Drawn(fault, path, "by name" if kinds else "right", kinds, worst)
-    return Drawn(fault, path, "named, numbers off" if kinds else "SILENTLY WRONG", kinds, worst)
+        return DrawnFile(fault, path, "by name" if kinds else "right", kinds, worst)
+    return DrawnFile(fault, path, "named, numbers off" if kinds else "SILENTLY WRONG", kinds, worst)
 
 
-def draws(n: int, seed: int) -> Iterator[Drawn]:
+def draws(n: int, seed: int) -> Iterator[DrawnFile]:
     """Every fault on every path, and as many sound files as a fault has, over again."""
     places = [(f, p) for f in (*FAULTS, "sound") for p in PATHS if not (p == "mcap" and f in NO_RATE)]
     for k in range(n):
