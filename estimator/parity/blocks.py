@@ -158,12 +158,15 @@ def unclipped(ledger: Ledger, blocks: Blocks) -> Mask:
     clean = np.ones(len(blocks), dtype=bool)
     for sign, extreme, end in ((1.0, blocks.highest, ledger.ends[0]), (-1.0, blocks.lowest, ledger.ends[1])):
         touched = sign * extreme >= end.value[0]
-        often = end.count[0] > 1
+        often = end.count[0] >= np.maximum(PILED * end.count[1], PILED)
         rare = touched.mean(axis=0) < RARE
         clean &= ~(touched & (~np.isnan(end.limit) | (often & rare))).any(axis=1)
     return clean
 
 
+PILED = 2
+"""Times as often as at the reading next to it that a channel must stand at its extreme, where it is the end of a range;
+of the tail of noise fewer stand there than next to it."""
 RARE = 0.05
 """Share of the blocks in which a channel may stand at its extreme for it to pass for the end of a range."""
 

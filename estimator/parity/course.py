@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-
 from scipy.ndimage import maximum_filter1d, median_filter
 from scipy.special import chdtri
 

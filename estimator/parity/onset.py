@@ -4,9 +4,9 @@ In this order, each with a rule of its own: dead sensors, by their raw readings 
 because exchanging them back makes parity quiet; then, sensor by sensor, a course that changes (`scan`, `shapes`), noise
 that grows (`signs`). A sensor that has been found takes no part in the search for the next.
 
-Naming. A change along V[i] leaves nothing across but noise and a small part (`SKEW`) by which directions are not known.
-A sensor that explains almost as much stays a suspect, by the margin of `hypotheses`. What no one sensor explains, and no
-two where six or more allow two, is no fault of a sensor, and nothing is said of it here.
+Naming. A change along V[i] leaves nothing across but noise and a small part (`SKEW`) by which directions are not
+known. A sensor that explains almost as much stays a suspect, by the margin of `hypotheses`. What no one sensor
+explains, and no two where six or more allow two, is no fault of a sensor, and nothing is said of it here.
 """
 
 from dataclasses import dataclass, replace
@@ -37,6 +37,8 @@ WRONG_SENSOR = 0.01
 """Chance that the true sensor is passed over, as of `hypotheses`."""
 NAMED = 5
 """Sensors that name one; two need one more."""
+LATE = 1.5
+"""Times a shift's z that a delay needs: swings that motion gives to sensors apart go with its changes as delays do."""
 OVER_NOISE = 2.0
 """Times the critical z from which a course says more than the noise that has grown with it."""
 PAIR = 3
@@ -137,7 +139,7 @@ class Search:
     def _strongest(self, sensor: int, scan: Scan, z: Array) -> float:
         """z of the strongest change: a shift over any interval, or an answer that comes late from some moment on."""
         late = best_onset(self.course, scan, DELAY, lag(self.course, sensor))
-        return max(float(np.abs(z).max()), sqrt(late.square))
+        return max(float(np.abs(z).max()), sqrt(late.square) / LATE)
 
     def _sure(self, sign: Sign | None) -> Sign | None:
         """The sign, if it is sure; blocks of fewer sensors than the ledger's hold no signs that are theirs alone."""

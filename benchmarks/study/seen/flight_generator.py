@@ -18,6 +18,8 @@ Array = NDArray[np.float64]
 G = 9.81
 APART = np.radians(15.0)
 """Between any two sensors as they lie in parity: nearer ones are hardly told apart by anything."""
+MEDIAN = 0.455
+"""Of the square of a standard normal number."""
 LEAST_SEEN = 0.15
 """Share of a sensor that shows in parity."""
 
@@ -130,12 +132,12 @@ class Flight:
         return float((~self.lost[: round(since * self.rate)]).sum() / self.rate)
 
     def standard_error(self, sensor: int) -> float:
-        """m/s² of a one-second mean of that sensor as it lies in parity, from one second to the next."""
+        """m/s² of a one-second mean of that sensor as it lies in parity, from one second to the next, typically."""
         V, n = self.unit.parity, int(self.rate)
         whole = len(self.inputs) // n * n
         p = ((self.inputs + self.noise)[:whole] @ V).reshape(-1, n, V.shape[1]).mean(axis=1)
         y = p @ V[sensor] / (V[sensor] @ V[sensor])
-        return float(np.sqrt(np.mean(np.diff(y, 2) ** 2) / 6.0))
+        return float(np.sqrt(np.median(np.diff(y, 2) ** 2) / MEDIAN / 6.0))
 
 
 def axes_of(m: int, rng: np.random.Generator) -> Array:

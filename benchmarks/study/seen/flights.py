@@ -81,10 +81,10 @@ def table(n: int, seed: int) -> str:
     sounds = [sound for sound, _ in flights]
     rows = [(kind, *_row([one for one in found if one.fault.kind == kind])) for kind in KINDS]
     head = ("fault", "noticed", "its sensor", "onset within 2 s", "its kind", "another named beside it", "else called")
-    named = sorted({kind for sound in sounds for kind in sound.named})
+    named = ", ".join(sorted({kind for sound in sounds for kind in sound.named})) or "none"
     quiet = (
         f"Sound flights in which anything was named: {rate([bool(s.named) for s in sounds])}"
-        f"{f' ({", ".join(named)})' if named else ''}; called changed: {rate([s.detected for s in sounds])}."
+        f" ({named}); called changed: {rate([s.detected for s in sounds])}."
     )
     return f"{markdown(head, [*rows, ('all', *_row(found))])}\n\n{quiet}"
 
