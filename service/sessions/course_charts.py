@@ -8,18 +8,7 @@ import numpy as np
 from estimator.json_object import Json
 from estimator.message import joined, say
 from estimator.parity import CourseFault, ParityResult
-from estimator.parity.results import (
-    DELAY,
-    EXCHANGED,
-    FULL_SCALE,
-    GAIN,
-    INTERMITTENT,
-    NOISE,
-    RAMP,
-    STEP,
-    STUCK,
-    ZERO,
-)
+from estimator.parity.results import COURSE_KINDS
 from estimator.results import Calibration
 from estimator.session import Array
 from service.kit.libraries import alt
@@ -46,22 +35,19 @@ from service.sessions.charts import (
 
 FAULTS, ACROSS = "faults", "{across}"
 """The data set of the moments, and the blank for the title of x."""
-POINTS = 240
-"""Of a panel: one a pixel of the narrowest."""
 ROOM = 0.15
 """Share of the height that the label of a mark takes, above all lines."""
-LABELS = {
-    STEP: "{who} has jumped",
-    RAMP: "{who} drifts",
-    STUCK: "{who} stands still",
-    ZERO: "{who} reads zero",
-    FULL_SCALE: "{who} at the end of its range",
-    GAIN: "{who} has another scale factor",
-    NOISE: "{who} is noisy",
-    DELAY: "{who} comes late",
-    EXCHANGED: "{who} exchanged",
-    INTERMITTENT: "{who} off now and then",
-}
+LABELS = dict(
+    zip(
+        COURSE_KINDS,
+        (
+            *("{who} has jumped", "{who} drifts", "{who} stands still", "{who} reads zero"),
+            *("{who} at the end of its range", "{who} has another scale factor", "{who} is noisy", "{who} comes late"),
+            *("{who} exchanged", "{who} off now and then"),
+        ),
+        strict=True,
+    )
+)
 
 
 def charts_of_fit(calibration: Calibration) -> tuple[ChartSet, ...]:
@@ -73,7 +59,9 @@ def charts_of_fit(calibration: Calibration) -> tuple[ChartSet, ...]:
 
 def course_charts(result: ParityResult) -> tuple[ChartSet, ...]:
     """One set; the panels of sensors that fail come first. What an earlier release stored has fewer points."""
-    course, time, sigma = _course(result)
+    course, time, sigma = result.course_fine, result.course_fine_time, result.course_fine_sigma
+    if course is None or time is None or sigma is None:
+        course, time, sigma = result.course, result.course_time, result.course_sigma
     at_fault = {name for fault in result.faults for name in fault.suspects}
     largest = largest_edge(course, np.broadcast_to(sigma, course.shape))
     unit = deviation_measure(result.kind, "bias", largest)
@@ -98,18 +86,6 @@ def course_charts(result: ParityResult) -> tuple[ChartSet, ...]:
             panels=tuple(panel for _, panel in sorted(panels, key=lambda pair: pair[0])),
         ),
     )
-
-
-def _course(result: ParityResult) -> tuple[Array, Array, Array]:
-    """(n, m) course, m/s² (rad/s), (n,) s or rows, and (m,) one sigma, joined to as many points as are drawn."""
-    fine, time, sigma = result.course_fine, result.course_fine_time, result.course_fine_sigma
-    if fine is None or time is None or sigma is None:
-        return result.course, result.course_time, result.course_sigma
-    step = -(-len(fine) // POINTS)
-    starts = np.arange(0, len(fine), step)
-    count = np.diff(np.append(starts, len(fine)))
-    means = np.add.reduceat(fine, starts) / count[:, None]
-    return means, np.add.reduceat(time, starts) / count, sigma / np.sqrt(step)
 
 
 def _panel(result: ParityResult, name: str, drawn: tuple[Array, Array, float], unit: Measure, end: float) -> Panel:

@@ -26,6 +26,7 @@ from tests.service.commands.conftest import (
     run,  # noqa: F401 - a fixture
 )
 from tests.service.diagnosed import ECCENTRIC, accepted, held
+from tests.service.faulty_recordings import faulty_bytes
 from tests.service.made_sessions import FAILED, session_bytes, session_id
 from tests.service.papers.laboratory import named, state_all
 from tests.service.papers.mutations import anew, mutated
@@ -92,7 +93,9 @@ def printed(client: httpx.Client) -> bytes:
 
 def test_reference_judged_session_and_recording_agree(client: httpx.Client) -> None:
     recording = client.post("/api/v1/sessions", content=recording_bytes()).json()["id"]
-    for id in (session_id(FAILED[0]), ID, recording):
+    later = faulty_bytes("stuck").replace(b"2026-05-01T", b"2026-05-02T")
+    faulty = client.post("/api/v1/sessions", content=later).json()["id"]
+    for id in (session_id(FAILED[0]), ID, recording, faulty):
         found = verify(certificate(client, id), raw(client, id), NOTHING, NOW)
         assert found.outcome is Outcome.AGREES, found
 

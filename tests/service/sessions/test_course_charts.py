@@ -4,8 +4,6 @@ import json
 from dataclasses import replace
 from functools import cache
 
-import numpy as np
-
 from estimator import calibrate, read_session
 from estimator.parity import CourseFault, ParityResult, parity_check
 from service.papers.typeset import picture
@@ -38,15 +36,10 @@ def test_the_failing_sensor_comes_first_and_is_labelled_where_it_begins() -> Non
     assert [mark["text"] for mark in second.datasets["faults"]] == [""]
 
 
-def test_a_long_course_is_joined_to_what_can_be_drawn() -> None:
-    time = np.arange(1000.0)
-    course = np.where(time[:, None] < 500, 0.0, [0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
-    fine = {"course_fine": course, "course_fine_time": time, "course_fine_sigma": np.full(6, 0.1)}
-    [charts] = course_charts(replace(sound(), faults=(STUCK,), **fine))
-    points = charts.panels[0].datasets["points"]
-    assert 200 <= len(points) <= 240
-    assert points[0]["x"] == 2.0
-    assert points[-1]["y"] == np.max([point["y"] for point in points]) > 100
+def test_what_an_earlier_release_stored_has_fewer_points() -> None:
+    earlier = replace(sound(), course_fine=None, course_fine_time=None, course_fine_sigma=None)
+    counts = [len(course_charts(result)[0].panels[0].datasets["points"]) for result in (sound(), earlier)]
+    assert counts == [60, sound().groups]
 
 
 def test_paper_draws_the_same_definition() -> None:
