@@ -1,4 +1,4 @@
-"""Blocks over temperature by the law of physics alone: u = u₀ + K(T)·(a + b(T) + c·a²), held still, written as files."""
+"""Blocks over temperature by the law of physics alone, u = u₀ + K(T)·(a + b(T) + c·a²), held still; as files."""
 
 from dataclasses import dataclass, field
 
