@@ -1,4 +1,4 @@
-"""Blocks over temperature by the law of physics alone: u = u₀ + K(T)·(a + b(T) + c·a²), held still, written as files."""
+"""Blocks over temperature by the law of physics alone, u = u₀ + K(T)·(a + b(T) + c·a²), held still; as files."""
 
 from dataclasses import dataclass, field
 
@@ -50,7 +50,7 @@ GYRO_SCALE = 50.0
 
 
 @dataclass(frozen=True, eq=False)
-class True_:
+class Truly:
     """What is so: powers of T − 20, axes, applied directions, temperatures and times."""
 
     scale: Array
@@ -84,7 +84,7 @@ def behind(temperature: Array, time: Array, tau: float) -> Array:
     return np.interp(time, fine, L) - temperature
 
 
-def lived(case: Still, rng: np.random.Generator) -> tuple[Json, True_]:
+def lived(case: Still, rng: np.random.Generator) -> tuple[Json, Truly]:
     """A file, and what is so."""
     m, R = 6, len(case.soaks) * case.each
     axes = unit(cone(m) + 1e-3 * rng.standard_normal((m, 3)))
@@ -126,4 +126,4 @@ def lived(case: Still, rng: np.random.Generator) -> tuple[Json, True_]:
         stated = unit(up + case.known * rng.standard_normal((R, 3)))
         document["direction_sigma_deg"] = float(np.degrees(case.known))
         table |= {f"direction_{k}": stated[:, j].tolist() for j, k in enumerate("xyz")}
-    return document, True_(K, b, c, axes, gyro_bias, up, T, time)
+    return document, Truly(K, b, c, axes, gyro_bias, up, T, time)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from estimator import ScheduleError
+from estimator import ScheduleError, calibrate
 from estimator.thermal.begin import begin, dimensionless, settings_of
 from tests.estimator.thermal.physics import GYRO_SCALE, G, Still, lived
 from tests.estimator.thermal.sessions import session_of
@@ -96,7 +96,7 @@ def test_what_is_estimated_first_is_every_coefficient_and_no_form() -> None:
 
 @pytest.mark.parametrize(("each", "order"), [(9, 4), (5, 4), (4, 3), (3, 2)])
 def test_the_order_is_the_highest_that_the_orientations_support(each: int, order: int) -> None:
-    """Every row says that gravity has one length: an ellipsoid asks for nine, each order for a centre and a size more."""
+    """Every row says that gravity has one length: an ellipsoid takes nine, each order a centre and a size more."""
     soaks = (20.0, -40.0, -20.0, 0.0, 40.0, 60.0)
     assert begin(session_of(lived(Still(soaks=soaks, each=each), RNG(6))[0])).order == order
     assert order == min((6 * each - 9) // 4, 4)
@@ -105,3 +105,13 @@ def test_the_order_is_the_highest_that_the_orientations_support(each: int, order
 def test_orientations_that_determine_no_line_are_refused() -> None:
     with pytest.raises(ScheduleError, match="repeat 9 or more"):
         begin(session_of(lived(Still(soaks=(20.0, 60.0), each=4), RNG(7))[0]))
+
+
+def test_gyros_alone_need_no_gravity() -> None:
+    document, true = lived(Still(gyros=3), RNG(8))
+    del document["site"]
+    document |= {"block": "gyroscope", "sensors": document["sensors"][6:]}
+    document["table"] = {k: v for k, v in document["table"].items() if k[0] != "A"}
+    result = calibrate(session_of(document))
+    assert [s.bias.value for s in result.sensors] == pytest.approx(true.gyro_bias[:, 0], abs=2e-5)
+    assert result.fit.dof == 3 * 81 - sum(s.bias.order + 1 for s in result.thermal.sensors if result.thermal)

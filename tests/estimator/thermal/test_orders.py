@@ -1,10 +1,16 @@
 """The choice of orders, against fits made anew without the terms."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from estimator import read_session
 from estimator.session import Array
-from estimator.thermal.orders import OrderChoice, model, unsaid
+from estimator.thermal.begin import begin
+from estimator.thermal.orders import OrderChoice, model, orders_of, unsaid
+from estimator.thermal.solve import ThermalFit, search_with_noise
+from tests.estimator.thermal.physics import Still, lived
 
 ROWS = 40
 HIGHEST = (3, 3)
@@ -54,3 +60,34 @@ def test_a_model_that_lacks_a_term_of_the_best_knows_nothing_less(order: tuple[i
     assert unsaid([best, other], best) == pytest.approx(np.diag([0.25, 0.0]) / 4)
     best = choice((0, 4), 0.0, np.zeros(2), 1.0)
     assert unsaid([best, other], best) == pytest.approx(np.diag([0.25, 0.0]) / 4)
+
+
+def curved(case: Still, seed: int = 1) -> tuple[ThermalFit, int]:
+    begun = begin(read_session(lived(case, np.random.default_rng(seed))[0]))
+    return search_with_noise(begun.rows, begun.state, begun.free(quadratic=False), stated=True), begun.order
+
+
+def test_each_sensor_gets_the_orders_that_its_curves_have() -> None:
+    """Parabolas of all, but for sensors whose bias or scale is turned to a line or a cubic, far above the noise."""
+    one, order = curved(Still(known=2e-3, gyros=3, quadratic=0.0))
+    q, p = order + 1, one.free.shape[1]
+    state = one.state
+    scale, bias = state.scale.copy(), state.bias.copy()
+    scale[1, 2], bias[2, 2:4], bias[3, 3], scale[4, 1:] = 0.0, 0.0, 0.1, 0.0
+    scale[[0, 1, 2, 3, 5], 3], bias[[0, 1, 4, 5], 3] = 0.0, 0.0
+    found = orders_of(replace(one, state=replace(state, scale=scale, bias=bias)), order, 1.0)
+    assert found.order[:6].tolist() == [[2, 2], [1, 2], [2, 1], [2, 3], [0, 2], [2, 2]]
+    assert found.order[6:].tolist() == [[0, 2]] * 3
+    for i in range(9):
+        kept = np.zeros(p, dtype=bool)
+        if i < 6:
+            kept[[*range(found.order[i, 0] + 1), -2, -1]] = True
+        kept[q : q + found.order[i, 1] + 1] = True
+        assert (found.free[i] == kept).all()
+
+
+def test_in_noise_a_hundred_times_larger_less_is_asked_for() -> None:
+    one, order = curved(Still(known=2e-3, quadratic=0.0))
+    plain, doubted = orders_of(one, order, 1.0), orders_of(one, order, 1e4)
+    assert plain.order.sum() > doubted.order.sum()
+    assert (np.diagonal(doubted.spread, axis1=1, axis2=2) >= -1e-12).all()

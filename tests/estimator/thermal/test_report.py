@@ -11,14 +11,14 @@ from estimator import Calibration, calibrate, read_session
 from estimator.arrays import tangents
 from estimator.curves import Curve
 from estimator.session import Array
-from tests.estimator.thermal.physics import Still, True_, lived
+from tests.estimator.thermal.physics import Still, Truly, lived
 
 KNOWN = Still(known=2e-3, gyros=3, soaks=(20.0, -40.0, 0.0, 45.0, 70.0), each=14)
 COUNT = 12
 
 
 @cache
-def calibrated(case_of: Callable[[], Still], seed: int = 1) -> tuple[Calibration, True_]:
+def calibrated(case_of: Callable[[], Still], seed: int = 1) -> tuple[Calibration, Truly]:
     document, true = lived(case_of(), np.random.default_rng(seed))
     return calibrate(read_session(document), quadratic=True), true
 
@@ -31,7 +31,7 @@ def unknown() -> Still:
     return Still(gyros=3, stated=False)
 
 
-def deviations(result: Calibration, true: True_) -> Array:
+def deviations(result: Calibration, true: Truly) -> Array:
     """(6, 5) estimates less the truth: scale, bias, quadratic, two turns of the axis."""
     off = np.zeros((6, 5))
     for i in range(6):

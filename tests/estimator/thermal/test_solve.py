@@ -7,7 +7,7 @@ import pytest
 
 from estimator.session import Array
 from estimator.thermal.begin import begin
-from estimator.thermal.model import linearise
+from estimator.thermal.model import ThermalRows, linearise
 from estimator.thermal.solve import ThermalFit, inverse_of, is_determined, of_kind, search, search_with_noise
 from tests.estimator.thermal.physics import G, Still, lived
 from tests.estimator.thermal.sessions import model_y, rows_and_state, session_of
@@ -18,7 +18,7 @@ def fit_of(case: Still, seed: int, *, stated: bool = True) -> ThermalFit:
     return search_with_noise(begun.rows, begun.state, begun.free(quadratic=True), stated=stated)
 
 
-def free_of(rows: "object", gyros: int, *, quadratic: bool = True) -> Array:
+def free_of(rows: ThermalRows, gyros: int, *, quadratic: bool = True) -> Array:
     free = np.ones((4 + gyros, 8), dtype=bool)
     free[4:, :2] = free[4:, -3:] = False
     free[:, -3] &= quadratic
@@ -54,7 +54,7 @@ def test_elements_that_are_not_free_stay_as_they_are() -> None:
     ("gyros", "stated", "rest"), [(0, False, -80 + 3), (0, True, 0), (3, False, -80 + 3), (3, True, 0)]
 )
 def test_degrees_of_freedom_are_readings_less_unknowns(gyros: int, stated: bool, rest: int) -> None:
-    """Two turns a setting where no direction is stated; three of them are a turn of the whole, which changes nothing."""
+    """Two turns a setting where no direction is stated; three of all are a turn of the whole, which changes nothing."""
     rows, state = rows_and_state(gyros=gyros, stated=stated, settings=40)
     free = free_of(rows, gyros)
     found = search(rows, state, free)

@@ -8,23 +8,23 @@ from scipy import stats
 
 from estimator import Calibration, calibrate, read_session
 from estimator.curves import HYSTERESIS, LAG, MISFIT
-from estimator.session import Array
 from estimator.thermal.begin import begin
+from estimator.thermal.course import TemperatureCourse
 from estimator.thermal.model import ThermalEquations
 from estimator.thermal.solve import ThermalFit, search_with_noise
 from estimator.thermal.structure import BINS, amplitudes, binned, misfit, misfits, noise_ratio, tried_forms
-from tests.estimator.thermal.physics import G, Still, True_, behind, lived
+from tests.estimator.thermal.physics import G, Still, Truly, behind, lived
 
 SLOW = tuple(np.r_[np.linspace(20.0, -40.0, 9), np.linspace(-30, 70, 15), np.linspace(62, -40, 14)].tolist())
 """°C, down, up and down."""
 
 
-def found(case: Still, seed: int = 1) -> tuple[Calibration, True_]:
+def found(case: Still, seed: int = 1) -> tuple[Calibration, Truly]:
     document, true = lived(case, np.random.default_rng(seed))
     return calibrate(read_session(document)), true
 
 
-def solved(case: Still, seed: int = 1) -> tuple[ThermalFit, "object"]:
+def solved(case: Still, seed: int = 1) -> tuple[ThermalFit, TemperatureCourse]:
     begun = begin(read_session(lived(case, np.random.default_rng(seed))[0]))
     return search_with_noise(begun.rows, begun.state, begun.free(quadratic=True), stated=True), begun.course
 
@@ -54,6 +54,15 @@ def test_a_column_that_the_fit_has_already_has_no_amplitude() -> None:
     size, covariance, _ = amplitudes(linear, np.array([3, 4]), np.arange(3), np.linalg.inv(F[:3, :3]))
     assert size[0] == pytest.approx(np.linalg.lstsq(X[:, :4], y, rcond=None)[0][3])
     assert (size[1], covariance[1, 1], covariance[0, 1]) == (0.0, 0.0, 0.0)
+
+
+def test_columns_that_have_nothing_in_common_keep_their_amplitudes() -> None:
+    """Of accelerometers and gyros each by its own."""
+    F, none = np.diag([4.0, 9.0, 16.0]), np.zeros(0)
+    linear = ThermalEquations(none, none, none, none, none, none, np.array([0.0, 9.0, 32.0]), F)
+    size, covariance, _ = amplitudes(linear, np.array([1, 2]), np.arange(1), np.array([[0.25]]))
+    assert size == pytest.approx([1.0, 2.0])
+    assert covariance == pytest.approx(np.diag([1 / 9, 1 / 16]))
 
 
 def test_the_misfit_of_bins_is_their_scatter_beyond_noise() -> None:
@@ -149,6 +158,16 @@ def test_a_lag_beside_a_loop_is_found_too() -> None:
     }
 
 
+def test_the_chance_of_a_form_is_that_of_fisher_s_law_over_all_forms_tried() -> None:
+    """With as many degrees of freedom as readings leave: few here."""
+    one, course = solved(Still(soaks=(20.0, -40.0, 20.0, 70.0, 20.0), each=6, loop=5e-4))
+    one = replace(one, chi2=2.0 * one.dof)
+    forms = list(tried_forms(one, course, 1, {HYSTERESIS, LAG}, stated=False))
+    for form in forms:
+        F = form.gain / 6
+        assert form.p_value == pytest.approx(min(1.0, stats.f.sf(F, 6, one.dof - 6) * len(forms)), rel=0.02)
+
+
 def test_where_the_temperature_only_rises_there_is_no_loop_to_find() -> None:
     one, course = solved(Still(soaks=tuple(np.linspace(-40, 70, 12).tolist())))
     kinds = {form.kind for form in tried_forms(one, course, course.order, {HYSTERESIS, LAG}, stated=True)}
@@ -184,7 +203,7 @@ def test_by_chance_curves_are_missed_as_often_as_is_said() -> None:
 
 @pytest.mark.parametrize("parameter", ["bias", "scale"])
 def test_a_wave_that_no_polynomial_follows_is_a_misfit_of_its_size(parameter: str) -> None:
-    """3 mm/s² or 300 ppm of the scale factor, from end to end of the range 1.5 times: τ is its root mean square or so."""
+    """Of 3 mm/s², or of 300 ppm of the scale factor, every 30 °C: τ is its root mean square or so."""
     document, true = lived(Still(soaks=SLOW, each=6, known=2e-3), np.random.default_rng(3))
     wave = np.sin(2 * np.pi * (true.temperature - 20) / 30)
     by = 3e-3 if parameter == "bias" else 3e-4 * G * true.up @ true.axes[1]
