@@ -35,7 +35,10 @@ def test_a_common_factor_beyond_gravity_is_the_units(holding: Holding, factor: f
     client = holding(REFERENCE, later := scaled(factor), SOUND, diagnosed=True)
     found = session(client, later)
     assert found["verdict"] == "fail"
-    assert "more than gravity at the stated place can: check the supply voltage, the converter's reference, the range" in found["reason"]
+    assert (
+        "more than gravity at the stated place can: check the supply voltage, the converter's reference, the range"
+        in found["reason"]
+    )
     after = session(client, SOUND)
     assert (after["verdict"], after["reservations"]) == ("pass", [])
 
