@@ -8,6 +8,7 @@ from typing import Any
 import httpx
 import pytest
 
+from estimator.moments import moment
 from tests.conftest import Holding
 from tests.databases import one_engine
 from tests.service.grouped import CUBIC, cubic_session
@@ -66,7 +67,7 @@ def test_what_began_in_a_file_without_a_date_is_shown_and_accepted(holding: Hold
     (finding,) = client.get(f"/api/v1/units/{UNIT}/diagnosis").raise_for_status().json()["findings"]
     moments = [one["started_at"] for one in stored(client)]
     assert (finding["cause"], finding["form"], finding["since"]) == (CAUSE, "since", moments[2])
-    assert [one["started_at"] for one in finding["sessions"]] == moments
+    assert [moment(one["started_at"]) for one in finding["sessions"]] == [moment(at) for at in moments]
     assert client.get(f"/units/{UNIT}", headers=HTML).status_code == 200
     body = {"cause": CAUSE, "sensors": ["A2"], "by": "K. Ito", "note": ""}
     client.post(f"/api/v1/units/{UNIT}/diagnosis/accept", json=body).raise_for_status()
