@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from estimator.applied_vector import gravity
+from estimator.errors import ScheduleError
 from estimator.message import joined, say
 from estimator.parity.blocks import ANY, AUTO, MOTIONS, BlockSelection, select
 from estimator.parity.course import MOST

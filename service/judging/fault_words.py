@@ -53,7 +53,8 @@ MILLISECONDS = Measure("ms", 1e3)
 
 
 def faults_in_words(result: ParityResult, started_at: str | None) -> tuple[ServiceFault, ...]:
-    """Every sensor that fails, the earliest first; ``started_at`` with the offset of the place, None where the file does not say."""
+    """Every sensor that fails, the earliest first; ``started_at`` by the clock of the place, None where the file does
+    not say."""
     return tuple(_in_words(fault, result, started_at) for fault in result.faults)
 
 
