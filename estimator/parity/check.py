@@ -4,12 +4,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.special import chdtri
 
 from estimator.applied_vector import gravity
 from estimator.errors import Problem, ScheduleError
 from estimator.message import joined, say
 from estimator.parity.blocks import ANY, AUTO, MOTIONS, BlockSelection, select
-from estimator.parity.course import Course
+from estimator.parity.course import coarse
 from estimator.parity.freed import freed
 from estimator.parity.hypotheses import ParityEvidence
 from estimator.parity.ledger import BLOCK, Ledger
@@ -95,7 +96,7 @@ class ParityAccumulator:
         parts = [self._part(ledger, motion, false_alarm) for ledger in self._parts(looked, sound)]
         before, after = parts if looked.faults else (None, None)
         top = before or after or self._compared(self.ledger, motion, false_alarm)
-        return replace(top, faults=looked.faults, before=before, after=after, **self._course(looked.course))
+        return replace(top, faults=looked.faults, before=before, after=after, **self._course())
 
     def _parts(self, looked: Looked, sound: list[int]) -> Iterator[Ledger]:
         """The part before the first fault and that after the last has begun or ended.
@@ -128,17 +129,16 @@ class ParityAccumulator:
         change = freed(selection, ledger.reference, self._norm, allowed)
         return self._judged(ledger, selection, change, ParityEvidence(change), still, false_alarm)
 
-    def _course(self, course: Course | None) -> dict[str, Array]:
-        """The fine course of every sensor, for people to look at."""
-        if course is None:
-            return {}
-        V, rate = course.reference.parity, self._rate or 1.0
-        middle = course.start + (course.blocks.first + 0.5) * course.span
-        sigma = np.linalg.norm(V @ np.linalg.inv(course.white), axis=1)
+    def _course(self) -> dict[str, Array]:
+        """The fine course of every sensor over the whole recording, for people to look at."""
+        blocks, start, span = coarse(self.ledger.blocks())
+        P = self.reference.parity @ self.reference.parity.T
+        second = self.ledger.length / (self._rate or self.ledger.length)
+        noise = np.median((blocks.halves @ P) ** 2, axis=0) / chdtri(1, 0.5)
         return {
-            "course_fine": course.blocks.mean @ V @ V.T,
-            "course_fine_time": middle * self.ledger.length / rate,
-            "course_fine_sigma": sigma,
+            "course_fine": blocks.mean @ P,
+            "course_fine_time": (start + (blocks.first + 0.5) * span) * second,
+            "course_fine_sigma": np.sqrt(noise),
         }
 
     def _judged(
