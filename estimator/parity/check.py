@@ -95,7 +95,8 @@ class ParityAccumulator:
         sound = [k for k in range(len(self.reference.names)) if k not in looked.silent]
         parts = [self._part(ledger, motion, false_alarm) for ledger in self._parts(looked, sound)]
         before, after = parts if looked.faults else (None, None)
-        top = before or after or self._compared(self.ledger, motion, false_alarm)
+        top = before or after or self._without(looked, motion, false_alarm)
+        top = top or self._compared(self.ledger, motion, false_alarm)
         return replace(top, faults=looked.faults, before=before, after=after, **self._course())
 
     def _parts(self, looked: Looked, sound: list[int]) -> Iterator[Ledger]:
@@ -111,6 +112,14 @@ class ParityAccumulator:
         if looked.faults:
             yield self.ledger.part((blocks.first + 1) * length <= min(begun), everyone)
             yield self.ledger.part(blocks.first * length >= max(over), living)
+
+    def _without(self, looked: Looked, motion: str, false_alarm: float) -> ParityResult | None:
+        """What the sensors say that do not fail, all through the recording; None where too few are left."""
+        failed = {name for fault in looked.faults for name in fault.suspects}
+        kept = np.array([k for k, name in enumerate(self.reference.names) if name not in failed])
+        if not failed or len(kept) < FEWEST:
+            return None
+        return self._part(self.ledger.part(np.ones(len(self.ledger.blocks()), dtype=bool), kept), motion, false_alarm)
 
     def _part(self, ledger: Ledger, motion: str, false_alarm: float) -> ParityResult | None:
         """What a part of the recording says; None where it is too short to say anything."""
