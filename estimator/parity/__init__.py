@@ -22,9 +22,15 @@ regression  Θ with its covariance: noise of any colour, from the recording itse
 freed       Θ with its covariance, freed of what motion does
 hypotheses  which sensor: generalised likelihood ratio, and what the recording could have found
 isolation   from what size on a change is attributed to its sensor
+standing    sensors that are dead, by their raw readings
+course      parity block by block, with what noise and motion do to it
+scan        when a course begins to differ: the likelihood ratio of every onset and end
+shapes      how a sensor fails from one moment on
+signs       two sensors exchanged, noise that grows
+onset       faults that begin within the recording
 check       the whole
 Source: parity space for redundant inertial sensors, Potter and Suman (1977); generalised likelihood ratio, Daly, Gai
-and Harrison (1979).
+and Harrison (1979); of the onset, Willsky and Jones (1976).
 """
 
 from typing import TYPE_CHECKING

@@ -4,12 +4,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.special import chdtri
 
 from estimator.applied_vector import gravity
 from estimator.errors import ScheduleError
 from estimator.message import joined, say
 from estimator.parity.blocks import ANY, AUTO, MOTIONS, BlockSelection, select
-from estimator.parity.course import MOST
+from estimator.parity.course import coarse
 from estimator.parity.freed import freed
 from estimator.parity.hypotheses import ParityEvidence
 from estimator.parity.ledger import BLOCK, Ledger
@@ -93,18 +94,9 @@ class ParityAccumulator:
         sound = [k for k in range(len(self.reference.names)) if k not in looked.silent]
         parts = [self._part(ledger, motion, false_alarm) for ledger in self._parts(looked, sound)]
         before, after = parts if looked.faults else (None, None)
-        begins = min((fault.since for fault in looked.faults), default=np.inf)
-        top = before or after or self._compared(self.ledger, motion, false_alarm)
-        course, time, sigma = self._course(begins)
-        return replace(
-            self._of_all(top),
-            faults=looked.faults,
-            before=before,
-            after=after,
-            course_fine=course,
-            course_fine_time=time,
-            course_fine_sigma=sigma,
-        )
+        top = before or after or self._without(looked, motion, false_alarm)
+        top = top or self._compared(self.ledger, motion, false_alarm)
+        return replace(self._of_all(top), faults=looked.faults, before=before, after=after, **self._course())
 
     def _of_all(self, top: ParityResult) -> ParityResult:
         """With the sensors that took no part, of which nothing is seen."""
@@ -130,6 +122,14 @@ class ParityAccumulator:
             yield self.ledger.part((blocks.first + 1) * length <= min(begun), everyone)
             yield self.ledger.part(blocks.first * length >= max(over), living)
 
+    def _without(self, looked: Looked, motion: str, false_alarm: float) -> ParityResult | None:
+        """What the sensors say that do not fail, all through the recording; None where too few are left."""
+        failed = {name for fault in looked.faults for name in fault.suspects}
+        kept = np.array([k for k, name in enumerate(self.reference.names) if name not in failed])
+        if not failed or len(kept) < FEWEST:
+            return None
+        return self._part(self.ledger.part(np.ones(len(self.ledger.blocks()), dtype=bool), kept), motion, false_alarm)
+
     def _part(self, ledger: Ledger, motion: str, false_alarm: float) -> ParityResult | None:
         """What a part of the recording says; None where it is too short to say anything."""
         try:
@@ -147,17 +147,17 @@ class ParityAccumulator:
         change = freed(selection, ledger.reference, self._norm, allowed)
         return self._judged(ledger, selection, change, ParityEvidence(change), still, false_alarm)
 
-    def _course(self, begins: float) -> tuple[Array, Array, Array]:
-        """(n, m) fine course of every sensor for people to look at, (n,) times and (m,) sigma, as `ParityResult` has
-        them; sigma is by the steps from point to point before a sensor ``begins`` to fail, s."""
-        blocks, length = self.ledger.blocks(), self.ledger.length / (self._rate or 1.0)
-        starts = np.arange(0, len(blocks), -(-len(blocks) // MOST) or 1)
-        count = np.diff(np.append(starts, len(blocks)))
-        V = self.reference.parity
-        course = np.add.reduceat(blocks.mean, starts) @ V @ V.T / count[:, None]
-        time = np.add.reduceat(blocks.first + 0.5, starts) / count * length
-        steps = np.diff(course[time < begins] if (time < begins).sum() > 1 else course, axis=0)
-        return course, time, np.median(np.abs(steps), axis=0) / (NORMAL_QUARTILE * np.sqrt(2))
+    def _course(self) -> dict[str, Array]:
+        """The fine course of every sensor over the whole recording, for people to look at."""
+        blocks, start, span = coarse(self.ledger.blocks())
+        P = self.reference.parity @ self.reference.parity.T
+        second = self.ledger.length / (self._rate or self.ledger.length)
+        noise = np.median((blocks.halves @ P) ** 2, axis=0) / chdtri(1, 0.5)
+        return {
+            "course_fine": blocks.mean @ P,
+            "course_fine_time": (start + (blocks.first + 0.5) * span) * second,
+            "course_fine_sigma": np.sqrt(noise),
+        }
 
     def _judged(
         self,

@@ -161,12 +161,8 @@ def course_of(ledger: Ledger, norm: float | None, rate: float) -> Course | None:
     norm : g, m/s²; None for gyros.
     rate : of the samples, Hz.
     """
-    blocks, reference, start, span = ledger.blocks(), ledger.reference, 0, 1
-    while len(blocks) > MOST:
-        odd = len(blocks) % 2
-        start, span = start + odd * span, 2 * span
-        later = blocks.at(np.arange(odd, len(blocks)))
-        blocks = replace(later, first=later.first - later.first[0]).joined()
+    reference = ledger.reference
+    blocks, start, span = coarse(ledger.blocks())
     total = len(blocks)
     clean = unclipped(ledger, blocks)
     if clean.sum() < max(FEWEST, total / 2):
@@ -180,6 +176,17 @@ def course_of(ledger: Ledger, norm: float | None, rate: float) -> Course | None:
     size = norm or float(np.sqrt((reference.vector(blocks.mean) ** 2).sum(axis=1).mean()))
     swings = rate / blocks.samples if norm is not None and not blocks.spin.shape[1] else None
     return Course(reference, blocks, start, span, total, white, p @ white, halves @ white, signals, sizes, size, swings)
+
+
+def coarse(blocks: Blocks) -> tuple[Blocks, int, int]:
+    """The blocks, joined until they are no more than `MOST`; how many were left out first, and how many make one."""
+    start, span = 0, 1
+    while len(blocks) > MOST:
+        odd = len(blocks) % 2
+        start, span = start + odd * span, 2 * span
+        later = blocks.at(np.arange(odd, len(blocks)))
+        blocks = replace(later, first=later.first - later.first[0]).joined()
+    return blocks, start, span
 
 
 FEWEST = 24

@@ -27,7 +27,7 @@ from estimator.parity.standing import Standing, standing
 from estimator.session import Array
 from estimator.significance import critical_chi2
 
-LEVEL = 1e-4
+LEVEL = 1e-5
 """Chance that a sound recording is given a fault, if motion is as modelled: far below that of a change."""
 SIGN_LEVEL = 1e-6
 """The same of noise and delays: variances of a few samples have longer tails than normal."""
@@ -55,7 +55,6 @@ class Looked:
 
     faults: tuple[CourseFault, ...]
     silent: tuple[int, ...]
-    course: Course | None
 
 
 def faults_of(ledger: Ledger, norm: float | None, rate: float | None) -> Looked:
@@ -67,30 +66,28 @@ def faults_of(ledger: Ledger, norm: float | None, rate: float | None) -> Looked:
     rate : of the samples, Hz; without one rows are averages, which have no course.
     """
     if rate is None or ledger.averaged:
-        return Looked((), (), None)
+        return Looked((), ())
     dead = standing(ledger)
     found = [_dead(one, ledger, rate) for one in dead]
     silent = [one.sensor for one in dead]
     sound = [i for i in range(len(ledger.reference.names)) if i not in silent]
-    whole: Course | None = None
-    for _ in range(MOST_FAULTS):
+    for turn in range(MOST_FAULTS):
         if len(sound) < (NAMED if len(ledger.reference.names) > FEWEST else FEWEST):
             break
         part = ledger.part(np.ones(len(ledger.blocks()), dtype=bool), np.array(sound))
         course = course_of(part, norm, rate)
         if course is None:
             break
-        whole = whole or course
         search = Search(course, ledger.length / rate, rate, len(sound) == len(ledger.reference.names))
         faults, gone = search.next()
-        if whole is not course:
+        if turn:
             faults = [fault for fault in faults if fault.sensor is not None]
         found += faults
         silent += [sound[k] for k in gone if any(f.kind == EXCHANGED for f in faults)]
         sound = [s for k, s in enumerate(sound) if k not in gone]
         if not gone:
             break
-    return Looked(tuple(sorted(found, key=lambda f: f.since)), tuple(silent), whole)
+    return Looked(tuple(sorted(found, key=lambda f: f.since)), tuple(silent))
 
 
 def _dead(one: Standing, ledger: Ledger, rate: float) -> CourseFault:

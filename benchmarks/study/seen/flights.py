@@ -13,7 +13,7 @@ from benchmarks.study.rates import rate
 from benchmarks.study.report import table as markdown
 from benchmarks.study.seen.faults import KINDS, draw_fault
 from benchmarks.study.seen.flight_generator import Fault, Flight, draw_flight, recorded, tumble
-from estimator import Calibration, ParityResult, calibrate, parity_check, read_session
+from estimator import Calibration, ParityResult, ScheduleError, calibrate, parity_check, read_session
 
 SENSORS = (5, 6, 7, 8)
 NEAR = 2.0
@@ -71,7 +71,11 @@ def flown(seed: int, k: int) -> tuple[Sound, Seen | None]:
         fault = draw_fault(KINDS[k % len(KINDS)], flight, rng)
     except ValueError:
         return quiet, None
-    return quiet, seen(fault, flight.since_in_rows(fault.since), judged(flight, known, (fault,), rng))
+    try:
+        result = judged(flight, known, (fault,), rng)
+    except ScheduleError:
+        return quiet, Seen(fault, False, False, False, False, 0, "refused")
+    return quiet, seen(fault, flight.since_in_rows(fault.since), result)
 
 
 def table(n: int, seed: int) -> str:
