@@ -27,7 +27,7 @@ from estimator.parity.standing import Standing, standing
 from estimator.session import Array
 from estimator.significance import critical_chi2
 
-LEVEL = 1e-4
+LEVEL = 1e-5
 """Chance that a sound recording is given a fault, if motion is as modelled: far below that of a change."""
 SIGN_LEVEL = 1e-6
 """The same of noise and delays: variances of a few samples have longer tails than normal."""
