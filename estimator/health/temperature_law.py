@@ -238,7 +238,7 @@ def _scatter(design: Array, value: Array, noise: Array, free: int) -> float:
         return _fitted(design, value, noise + scatter)[2] - free
 
     most = float((value - value.mean()) @ (value - value.mean()))
-    if free < 1 or excess(0.0) <= 0 or excess(most) >= 0:
+    if free < 1 or excess(0.0) <= 0:
         return 0.0
     return float(brentq(excess, 0.0, most))
 

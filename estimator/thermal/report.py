@@ -135,7 +135,7 @@ def curves_of(
             coefficients=by_scale @ solved.state.scale[i],
             order=int(orders.order[i, 0]),
             covariance=by_scale @ known[:q, :q] @ by_scale.T,
-            scatter=float(abs(sensor.nominal_scale) * scatter[0]),
+            scatter=float(sensor.nominal_scale * scatter[0]),
             dof=freedom,
         )
         curves.append(SensorCurves(sensor.name, bias, scale, by_scale @ known[:q, q : 2 * q] @ by_bias.T))
@@ -170,6 +170,6 @@ def findings(
             )
         for parameter, scatter, chance in zip(("scale", "bias"), missed.sigma[i], missed.p_value[i], strict=True):
             if scatter > 0 and chance < LEVEL:
-                size = unit_of if parameter == "bias" else abs(begun.session.sensors[place].nominal_scale)
+                size = unit_of if parameter == "bias" else begun.session.sensors[place].nominal_scale
                 found.append(ThermalFinding(MISFIT, name, parameter, float(scatter) * size, 0.0, float(chance)))
     return found

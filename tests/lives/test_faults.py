@@ -86,19 +86,17 @@ def test_counts_of_sixteen_bits_tell_what_volts_tell() -> None:
 @pytest.mark.parametrize("sickness", SICKNESSES)
 @pytest.mark.parametrize("labelled", [True, False])
 def test_a_sick_log_is_refused_or_tells_what_the_sound_one_tells(sickness: str, labelled: bool) -> None:
-    for seed in range(3):
-        sound = measured("LG-680", number=seed)
-        if not labelled:
-            del sound["table"]["position"]
-        holds(in_counts(sound), sick(sound, sickness, RNG(seed)))
+    sound = measured("LG-680", number=1)
+    if not labelled:
+        del sound["table"]["position"]
+    holds(in_counts(sound), sick(sound, sickness, RNG(1)))
 
 
 @pytest.mark.parametrize("slip", SLIPS)
 @pytest.mark.parametrize("serial", ["LV-101", "LV-240", "HM-460", "MX-890"])
 def test_a_gross_reading_changes_what_a_session_tells_by_little(serial: str, slip: str) -> None:
-    for seed in range(3):
-        sound = measured(serial, number=seed)
-        holds(sound, gross(sound, slip, RNG(seed)).document)
+    sound = measured(serial)
+    holds(sound, gross(sound, slip, RNG(1)).document)
 
 
 def holds(sound: Document, faulty: Document) -> None:

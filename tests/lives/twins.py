@@ -37,9 +37,9 @@ LITTLE = 0.5
 of a session are told by a few readings less."""
 DAYS = 1
 """By which the dates of a unit may differ."""
-SAME = 1e-9
-"""Relative difference of numbers that follow from the same files."""
-LAST_DIGIT = 1e-12
+SAME = 1e-3
+"""Standard uncertainties by which figures of files differ that differ in a last digit."""
+LAST_DIGIT = 1e-9
 OPPOSITE = {"pass", "fail"}
 
 
@@ -180,7 +180,7 @@ def _figures_agree(world: World, serial: str, twin: dict[str, str], struck: dict
         if by > most:
             raise FindError(f"{serial}: {sensor} {parameter} of {second} is off by {by:.2f} u")
         is_number = point["value"] is not None and parameter != "axis"
-        near = SAME * (abs(point["value"] or 0.0) + (point["u"] or 0.0))
+        near = SAME * (point["u"] or 0.0)
         if right is None and is_number and abs(point["value"] - other["value"]) > near:
             raise FindError(f"{serial}: {sensor} {parameter} of {second} is {other['value']}, not {point['value']}")
 

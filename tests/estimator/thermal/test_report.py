@@ -14,7 +14,7 @@ from estimator.session import Array
 from tests.estimator.thermal.physics import Still, Truly, lived
 
 KNOWN = Still(known=2e-3, gyros=3, soaks=(20.0, -40.0, 0.0, 45.0, 70.0), each=14)
-COUNT = 12
+COUNT = 8
 
 
 @cache
@@ -74,7 +74,7 @@ def test_gyros_at_rest_tell_their_bias_alone() -> None:
             assert s.bias.sigma is not None
             errors.append((s.bias.value - true.gyro_bias[i, 0]) / s.bias.sigma)
         assert np.isnan(result.covariance[30:, 30:]).sum() == 15**2 - 9
-    assert np.mean(np.square(errors)) == pytest.approx(1.0, abs=4 * np.sqrt(2 / 12 / 3))
+    assert np.mean(np.square(errors)) == pytest.approx(1.0, abs=4 * np.sqrt(2 / COUNT / 3))
 
 
 def test_curves_lie_within_their_bands_of_the_truth() -> None:

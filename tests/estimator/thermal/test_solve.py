@@ -93,13 +93,13 @@ def test_what_a_sensor_leaves_is_what_noise_leaves_in_it() -> None:
     rows, state = rows_and_state(gyros=3, settings=40)
     rng, exact, free = np.random.default_rng(8), model_y(rows, replace(state, rates=0 * state.rates)), free_of(rows, 3)
     energies = []
-    for _ in range(60):
+    for _ in range(30):
         spin = 7.292115e-5 / np.sqrt(3) * rng.standard_normal((40, 3)) @ state.axes[4:].T
         y = exact + rows.sigma * rng.standard_normal(rows.y.shape)
         y[:, 4:] += spin[rows.setting]
         found = search(replace(rows, y=y), state, free)
         energies.append(found.energy)
-    mean, error = np.mean(energies, axis=0), np.std(energies, axis=0) / np.sqrt(60)
+    mean, error = np.mean(energies, axis=0), np.std(energies, axis=0) / np.sqrt(30)
     assert (np.abs(mean - found.redundancy) < 4 * error).all()
 
 

@@ -90,7 +90,7 @@ def test_bins_that_tell_nothing_do_not_count() -> None:
 
 def test_bins_part_the_range_in_ten() -> None:
     """A row is in the bin of its temperature, and only its sensor's scale or bias answers to it."""
-    one, course = solved(Still(soaks=SLOW, each=6))
+    one, course = solved(Still(soaks=SLOW, each=4))
     linear, at, old = binned(one, course)
     m, p = one.free.shape
     assert at.shape == (6, 2, BINS)
@@ -121,7 +121,7 @@ def test_what_is_left_over_is_counted_in_the_noise_that_remains(stated: bool) ->
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_a_loop_is_found_with_its_sign_in_the_sensors_that_have_it(sign: float) -> None:
     """The width is the warming leg's bias less the cooling one's in the middle of the range."""
-    result, true = found(Still(soaks=SLOW, each=6, loop=sign * 0.01))
+    result, true = found(Still(soaks=SLOW, each=4, loop=sign * 0.01))
     assert result.thermal is not None
     assert {(f.kind, f.sensor, f.parameter) for f in result.thermal.findings} == {
         (HYSTERESIS, f"A{i}", "bias") for i in (1, 2, 3)
@@ -151,7 +151,7 @@ def test_a_lag_is_found_with_its_sign_and_time_constant(lag: float, tau: float) 
 
 
 def test_a_lag_beside_a_loop_is_found_too() -> None:
-    result, _ = found(Still(soaks=SLOW, each=6, loop=0.02, lag=1e-3, tau=2500.0))
+    result, _ = found(Still(soaks=SLOW, each=4, loop=0.02, lag=1e-3, tau=2500.0))
     assert result.thermal is not None
     assert {(f.kind, f.sensor) for f in result.thermal.findings} >= {
         (k, f"A{i}") for i in (1, 2, 3) for k in (LAG, HYSTERESIS)
@@ -176,10 +176,10 @@ def test_where_the_temperature_only_rises_there_is_no_loop_to_find() -> None:
 
 
 def test_by_chance_a_form_shows_as_often_as_is_said() -> None:
-    """Of 24 sound sessions the chance of a loop is even, below a half in about half of them; that of the best lag is
+    """Of 16 sound sessions the chance of a loop is even, below a half in about half of them; that of the best lag is
     larger than it is said at most."""
     chances, singles, lags = [], [], []
-    for seed in range(24):
+    for seed in range(16):
         one, course = solved(Still(each=6, known=2e-3), seed)
         [loop] = tried_forms(one, course, 3, {HYSTERESIS}, stated=True)
         chances.append(loop.p_value)
@@ -192,8 +192,8 @@ def test_by_chance_a_form_shows_as_often_as_is_said() -> None:
 
 def test_by_chance_curves_are_missed_as_often_as_is_said() -> None:
     chances, scatter = [], []
-    for seed in range(10):
-        one, course = solved(Still(soaks=SLOW, each=4, known=2e-3), seed)
+    for seed in range(6):
+        one, course = solved(Still(soaks=SLOW, each=3, known=2e-3), seed)
         missed = misfits(one, course, stated=True)
         chances.append(missed.p_value.min())
         scatter.append(missed.sigma > 0)
@@ -204,7 +204,7 @@ def test_by_chance_curves_are_missed_as_often_as_is_said() -> None:
 @pytest.mark.parametrize("parameter", ["bias", "scale"])
 def test_a_wave_that_no_polynomial_follows_is_a_misfit_of_its_size(parameter: str) -> None:
     """Of 3 mm/s², or of 300 ppm of the scale factor, every 30 °C: τ is its root mean square or so."""
-    document, true = lived(Still(soaks=SLOW, each=6, known=2e-3), np.random.default_rng(3))
+    document, true = lived(Still(soaks=SLOW, each=4, known=2e-3), np.random.default_rng(3))
     wave = np.sin(2 * np.pi * (true.temperature - 20) / 30)
     by = 3e-3 if parameter == "bias" else 3e-4 * G * true.up @ true.axes[1]
     document["table"]["A2"] = (np.array(document["table"]["A2"]) + 0.12 * by * wave).tolist()
