@@ -21,8 +21,7 @@ from estimator.errors import Problem, ScheduleError, problem_at
 from estimator.message import joined, say
 from estimator.rest_noise import Indices, waves
 from estimator.rest_tilt import MeanErrors, errors_of_means
-from estimator.screening import without_wild
-from estimator.screening.findings import Sighting, seen, together
+from estimator.screening.gaps import ends, filled, moments, noise_floor, smallest_steps, without_stray
 from estimator.session import ACCELEROMETER, Array, CalibrationSession, Sensor
 
 WINDOW = 1.0
@@ -33,10 +32,6 @@ BLOCKS = 4
 
 SHORTEST = 1.0
 """s of standing still, after trimming, that make a position: as long as the window."""
-
-FLOOR = 0.05
-"""Part of all windows that is taken to be still; its upper end is the noise floor of a channel. A choice: small enough
-for logs that hardly rest, large enough that the floor is not the luckiest window's."""
 
 THRESHOLDS = (1.5, 2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 25.0, 40.0, 70.0)
 """Variances, in noise floors averaged over the channels, below which a window may count as still. Steps of about a
@@ -135,7 +130,7 @@ def average(
     else:
         intervals = best(session, residual)
     intervals = with_readings(session, intervals)
-    whole, session = session, without_stray(session, intervals)
+    whole, session = session, without_stray(session, intervals.start, intervals.stop)
     rows = averaged(session, intervals)
     if session is not whole:
         rows = replace(rows, at_ends=intervals.means(ends(whole.readings)))
@@ -144,26 +139,6 @@ def average(
         return rows
     errors = errors_by_kind(session, intervals, response)
     return replace(rows, standard_errors=errors.alone, tilt_error=errors.tilt)
-
-
-def without_stray(session: CalibrationSession, intervals: Intervals) -> CalibrationSession:
-    """The raw log without the samples that lie far from all others of their rest."""
-    if "wild" in session.unscreened:
-        return session
-    readings, found = session.readings, list[Sighting]()
-    for a, b in zip(intervals.start.tolist(), intervals.stop.tolist(), strict=True):
-        wild = without_wild(readings[a:b])
-        if wild is not None:
-            readings = readings.copy() if readings is session.readings else readings
-            readings[a:b][wild] = np.nan
-            found += stray(session.sensors, wild, a)
-    return replace(session, readings=readings, screening=(*session.screening, *together(found))) if found else session
-
-
-def stray(sensors: tuple[Sensor, ...], wild: NDArray[np.bool_], at: int) -> list[Sighting]:
-    """What was ``wild`` (r, m) in the rows from ``at`` on."""
-    channels = np.flatnonzero(wild.any(axis=0))
-    return [item for i in channels for item in seen("wild", (sensors[i].name,), np.flatnonzero(wild[:, i]), at)]
 
 
 def with_readings(session: CalibrationSession, intervals: Intervals) -> Intervals:
@@ -181,17 +156,6 @@ def enough(intervals: Intervals, known: Array, sensors: tuple[Sensor, ...]) -> I
         text = "has readings in hardly any rest: nearly all its samples were left out; record it again, or remove it"
         raise ScheduleError([Problem(name, text)])
     return intervals.at(held.all(axis=1))
-
-
-def filled(readings: Array) -> Array:
-    """Readings (R, m) with the last known one in every gap, the first before all; any unit."""
-    known = np.isfinite(readings)
-    if known.all():
-        return readings
-    last = np.maximum.accumulate(np.where(known, np.arange(len(readings))[:, None], -1), axis=0)
-    first = np.where(known.any(axis=0), known.argmax(axis=0), 0)
-    whole = np.take_along_axis(readings, np.where(last < 0, first, last), axis=0)
-    return np.nan_to_num(whole)
 
 
 def labelled(position: NDArray[np.int64]) -> Intervals:
@@ -298,27 +262,6 @@ def block_length(rate: float) -> int:
     return max(round(WINDOW * rate / BLOCKS), 2)
 
 
-def moments(readings: Array, block: int) -> tuple[Array, Array]:
-    """(blocks, m) mean and variance of every whole block of readings (R, m), their unit (squared), NaN where hardly any
-    is known."""
-    count = len(readings) // block
-    mean, within = np.empty((count, readings.shape[1])), np.empty((count, readings.shape[1]))
-    for i, channel in enumerate(readings[: count * block].T):
-        blocks = channel.reshape(count, block)
-        mean[:, i], within[:, i] = blocks.mean(axis=1), blocks.var(axis=1)
-        for k in np.flatnonzero(np.isnan(mean[:, i])).tolist():
-            known = blocks[k][np.isfinite(blocks[k])]
-            if len(known) > 1:
-                mean[k, i], within[k, i] = known.mean(), known.var()
-    return mean, within
-
-
-def smallest_steps(readings: Array) -> Array:
-    """(m,) least change, above zero, from sample to sample of readings (R, m), their unit; infinite where none is."""
-    steps = [np.abs(np.diff(channel)) for channel in filled(readings).T]
-    return np.array([changes.min(where=changes > 0, initial=np.inf) for changes in steps])
-
-
 def quietness_of(block: int, mean: Array, within: Array, steps: Array) -> Quietness:
     """From the `moments` (blocks, m) of blocks of so many samples, and the `smallest_steps` (m,), reading units."""
     count, m = mean.shape
@@ -334,14 +277,6 @@ def quietness_of(block: int, mean: Array, within: Array, steps: Array) -> Quietn
             total[usable] += ratio[usable]
             known += usable
     return Quietness(block, np.divide(total, known, out=np.full_like(total, np.inf), where=known > 0))
-
-
-def noise_floor(variance: Array, step: float) -> float:
-    """Variance of a channel at rest, its unit squared: that of its stillest windows, and not below its quantisation.
-
-    variance : (W,) of its windows; step : its smallest, reading units; infinite where it never changes.
-    """
-    return max(float(np.quantile(variance, FLOOR)), step**2 / 12) if np.isfinite(step) else 1.0
 
 
 def still(quiet: Quietness, threshold: float, rate: float) -> Intervals:
@@ -371,7 +306,7 @@ def best(session: CalibrationSession, residual: Callable[[CalibrationSession], f
         key = (*intervals.start.tolist(), *intervals.stop.tolist())
         if len(intervals) >= FEWEST and key not in tried:
             kept = with_readings(session, intervals)
-            tried[key] = (residual(averaged(without_stray(session, kept), kept)), intervals)
+            tried[key] = (residual(averaged(without_stray(session, kept.start, kept.stop), kept)), intervals)
     if not tried:
         raise ScheduleError([Problem("table", no_rests_message(len(session.readings)))])
     return min(tried.values(), key=lambda pair: pair[0])[1]
@@ -421,12 +356,6 @@ def variances(session: CalibrationSession, intervals: Intervals) -> Array:
     inputs = session.readings / [s.nominal_scale for s in session.sensors]
     inputs = inputs - np.nanmean(inputs, axis=0)
     return np.maximum(intervals.means(inputs**2) - intervals.means(inputs) ** 2, 0.0)
-
-
-def ends(readings: Array) -> Array:
-    """(R, m, 2) 1 where a sample of readings (R, m) is its channel's largest, its smallest, else 0; no unit."""
-    most, least = np.fmax.reduce(readings, axis=0), np.fmin.reduce(readings, axis=0)
-    return np.stack([readings == most, readings == least], axis=-1).astype(float)
 
 
 def contiguous(session: CalibrationSession) -> bool:

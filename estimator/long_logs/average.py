@@ -12,6 +12,7 @@ from estimator.message import say
 from estimator.reading.problems import Problems
 from estimator.reading.schedule import check_schedule
 from estimator.rest_noise import block_count
+from estimator.screening.gaps import filled, moments, smallest_steps
 from estimator.session import Array, CalibrationSession
 from estimator.static import (
     FEWEST,
@@ -21,12 +22,9 @@ from estimator.static import (
     TiltResponse,
     block_length,
     enough,
-    filled,
-    moments,
     no_rests_message,
     quietness_of,
     require_still,
-    smallest_steps,
     still,
     trimmed,
     watched_for_rest,

@@ -15,6 +15,7 @@ from estimator.rest_noise import block_count, waves_of
 from estimator.rest_tilt import MeanErrors, errors_of_means
 from estimator.screening import without_wild
 from estimator.screening.findings import Sighting, together
+from estimator.screening.gaps import stray
 from estimator.screening.wild import BLOCK
 from estimator.session import ACCELEROMETER, Array, CalibrationSession, Sensor
 from estimator.static import (
@@ -25,7 +26,6 @@ from estimator.static import (
     errors_of_kinds,
     far_turn,
     long_enough_to_move,
-    stray,
     turned,
 )
 

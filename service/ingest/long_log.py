@@ -261,7 +261,7 @@ class _Scan:
         for frame in self._frames(self._needed()):
             table = self._table(frame, codes)
             if screen is None:
-                head = self._checked({name: cells[:1] for name, cells in table.items()}, 0, None)
+                head = self._checked(self._table(frame.head(1), _Codes()), 0, None)
                 screen = Screen(head.sensors, frozenset(head.unscreened), head.sample_rate, self.passage.signs)
             yield self._checked(table, offset, screen)
             offset += len(frame)

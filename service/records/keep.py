@@ -10,8 +10,8 @@ import numpy as np
 from estimator.allan import BlockNoise, allan_terms, rests_of
 from estimator.errors import SessionError
 from estimator.results import Calibration
+from estimator.screening.gaps import filled
 from estimator.session import IN_SERVICE, Array, CalibrationSession
-from estimator.static import filled
 from service.ingest import read_upload
 from service.ingest.checked import as_checked
 from service.ingest.stream import open_recording
