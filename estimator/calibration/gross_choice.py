@@ -37,6 +37,9 @@ constant reading to tell of a dead channel: 3°, more than axes are mounted off.
 LEAST_COUNTS = 2.0
 """Counts by which a reading in whole counts must be expected to change: fewer may round to the same."""
 
+CUT_OFF = 0.2
+"""Part of the rows at one extreme, in several places, from which a channel is cut off: too many to predict by others."""
+
 CUT = 0.05
 """Part of a row's samples at an end of the channel's range from which its mean is a clipped one."""
 
@@ -158,6 +161,8 @@ def clipped(session: CalibrationSession, predicted: Predicted) -> Array:
         at_end = stands & often
         if session.at_ends is not None:
             at_end |= session.at_ends[..., k] >= CUT
+        alone = (stands[1:] & ~stands[:-1]).sum(axis=0) + stands[0]
+        found[:, (stands.mean(axis=0) >= CUT_OFF) & (alone > 1)] = True
         found |= at_end & (2 * (at_end & outward).sum(axis=0) > at_end.sum(axis=0))
     return found
 
