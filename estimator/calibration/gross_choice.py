@@ -38,7 +38,7 @@ LEAST_COUNTS = 2.0
 """Counts by which a reading in whole counts must be expected to change: fewer may round to the same."""
 
 CUT_OFF = 0.2
-"""Part of the rows at one extreme, in several places, from which a channel is cut off: too many to predict by others."""
+"""Part of the rows at one extreme, in several places, from which a channel is cut off: too many to predict."""
 
 CUT = 0.05
 """Part of a row's samples at an end of the channel's range from which its mean is a clipped one."""
