@@ -37,6 +37,9 @@ constant reading to tell of a dead channel: 3°, more than axes are mounted off.
 LEAST_COUNTS = 2.0
 """Counts by which a reading in whole counts must be expected to change: fewer may round to the same."""
 
+CUT_OFF = 0.2
+"""Part of the rows at one extreme, in several places, from which a channel is cut off: too many to predict."""
+
 CUT = 0.05
 """Part of a row's samples at an end of the channel's range from which its mean is a clipped one."""
 
@@ -62,8 +65,10 @@ def chosen(
     session: CalibrationSession, predicted: Predicted, suspects: Mapping[int, tuple[int, ...]] | None = None
 ) -> Choice:
     """The readings to set aside, by what was ``predicted``; ``suspects`` by row as in `Choice`."""
-    held = standing_still(session, predicted)
-    far = (apart(np.abs(np.where(held, 0.0, predicted.t))) | held) & ~clipped(session, predicted)
+    held, cut = standing_still(session, predicted), clipped(session, predicted)
+    for j, who in (suspects or {}).items():
+        cut[j] |= cut[j, list(who)].any()
+    far = (apart(np.abs(np.where(held, 0.0, predicted.t))) | held) & ~cut
     slips = {(int(j), int(i)): slip_of(session, predicted, int(j), int(i)) for j, i in np.argwhere(far)}
     plain = np.zeros(far.shape, dtype=bool)
     for place, slip in slips.items():
@@ -146,8 +151,8 @@ def standing_still(session: CalibrationSession, predicted: Predicted) -> Array:
 
 
 def clipped(session: CalibrationSession, predicted: Predicted) -> Array:
-    """(R, m) bool: readings at an end of their channel's range, expected beyond it: on a stand several at one of its
-    ends, in unknown orientations single ones too, which are as likely cut off as wrong."""
+    """(R, m) bool: readings at an end of their channel's range, expected beyond it in most: on a stand several at one
+    of its ends, in unknown orientations single ones too, which are as likely cut off as wrong."""
     u, beyond = session.readings, np.nan_to_num(predicted.value - session.readings)
     found, ends = np.zeros(u.shape, dtype=bool), (u == u.max(axis=0), u == u.min(axis=0))
     enough = 2 if session.programme == TWO_AXIS_STAND else 1
@@ -156,8 +161,9 @@ def clipped(session: CalibrationSession, predicted: Predicted) -> Array:
         at_end = stands & often
         if session.at_ends is not None:
             at_end |= session.at_ends[..., k] >= CUT
-        short = np.nan_to_num(np.abs(predicted.t)) < BESIDE
-        found |= at_end & np.where(at_end, outward | short, True).all(axis=0)
+        alone = (stands[1:] & ~stands[:-1]).sum(axis=0) + stands[0]
+        found[:, (stands.mean(axis=0) >= CUT_OFF) & (alone > 1)] = True
+        found |= at_end & (2 * (at_end & outward).sum(axis=0) > at_end.sum(axis=0))
     return found
 
 

@@ -339,6 +339,11 @@ def identified(session: CalibrationSession, block: Block, fit: BlockFit, felt: A
         likely = likely[np.argsort(tried.square[likely])]
         if len(likely) > 1:
             likely = self_evident(session, place, j, likely, tried.value * block.unit + offsets(session, place))
+        u, value = block.rows.y, tried.value
+        ends = ((u[j] == u.max(axis=0)) & (value > u[j])) | ((u[j] == u.min(axis=0)) & (value < u[j]))
+        if len(likely) > 1 and ends[likely].any():
+            fit.predicted.t[j] = np.nan
+            continue
         chosen[j] = fit.agrees[j] | far[j]
         chosen[j, likely[0]] = False
         directions[j] = tried.direction[likely[0]]

@@ -1,9 +1,9 @@
 """``python -m benchmarks.study.seen.gross --n 300 --seed 1`` prints how gross readings are found, as a table.
 
 A reading counts as named where its row and sensor stand in what the calibration set aside or among the diagnosis'
-findings, or, where it may as well be cut off, the alternative of one; another sensor counts as accused by any finding, structure or reading set aside that names it. Of triads in
-unknown orientations those are counted apart in which the physics leaves several readings that may be wrong: then what
-counts is that the row is named with the wrong sensor among the suspects.
+findings, or, where it may as well be cut off, the alternative of one; another sensor counts as accused by any finding,
+structure or reading set aside that names it. Of triads in unknown orientations those are counted apart in which the
+physics leaves several readings that may be wrong: there the suspects of a row count as named.
 """
 
 import argparse
