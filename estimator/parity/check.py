@@ -20,6 +20,7 @@ from estimator.parity.onset import Looked, faults_of
 from estimator.parity.reference import FEWEST, reference_of
 from estimator.parity.regression import ParityChange, regress
 from estimator.parity.results import NOTHING, ParityResult, SensorParity
+from estimator.parity.taken import Taken
 from estimator.results import Calibration
 from estimator.session import ACCELEROMETER, Array, CalibrationSession, Sensor, Site
 
@@ -67,15 +68,20 @@ class ParityAccumulator:
         self._rate = sample_rate
         self._period = np.where([s.kind != ACCELEROMETER for s in sensors], count_time or 1.0, 1.0)
         self._samples = 0
+        self._taken = Taken(sample_rate)
         length = 1 if sample_rate is None else max(round(BLOCK * sample_rate), 2)
         gyros = gyros_of(sensors, calibration) if kind == ACCELEROMETER else None
         self.ledger = Ledger(self.reference, length, gyros=gyros)
 
-    def add(self, readings: Array) -> None:
-        """The next rows (R, m) of all m sensors, reading units as in the file; a row with NaN says nothing."""
-        known = readings[np.isfinite(readings).all(axis=1)]
+    def add(self, readings: Array, time: Array | None = None) -> None:
+        """The next rows (R, m) of all m sensors, reading units as in the file; a row with NaN says nothing.
+
+        ``time`` (R,) s, of the rows where samples may be missing between them; else they follow at the sample rate.
+        """
+        known = np.isfinite(readings).all(axis=1)
+        self._taken.add(known, time)
         self._samples += len(readings)
-        self.ledger.add(known / self._period)
+        self.ledger.add(readings[known] / self._period)
 
     def result(self, *, motion: str = AUTO, false_alarm: float = FALSE_ALARM) -> ParityResult:
         """What the recording so far says; ScheduleError where it cannot say anything. More may be added after it.
@@ -96,7 +102,11 @@ class ParityAccumulator:
         before, after = parts if looked.faults else (None, None)
         top = before or after or self._without(looked, motion, false_alarm)
         top = top or self._compared(self.ledger, motion, false_alarm)
-        return replace(self._of_all(top), faults=looked.faults, before=before, after=after, **self._course())
+        faults = tuple(
+            replace(fault, since=self._taken.at(fault.since), until=fault.until and self._taken.at(fault.until))
+            for fault in looked.faults
+        )
+        return replace(self._of_all(top), faults=faults, before=before, after=after, **self._course())
 
     def _of_all(self, top: ParityResult) -> ParityResult:
         """With the sensors that took no part, of which nothing is seen."""
@@ -155,7 +165,7 @@ class ParityAccumulator:
         noise = np.median((blocks.halves @ P) ** 2, axis=0) / chdtri(1, 0.5)
         return {
             "course_fine": blocks.mean @ P,
-            "course_fine_time": (start + (blocks.first + 0.5) * span) * second,
+            "course_fine_time": self._taken.at((start + (blocks.first + 0.5) * span) * second),
             "course_fine_sigma": np.sqrt(noise),
         }
 
@@ -261,5 +271,5 @@ def parity_check(
         site=session.site,
         count_time=session.count_time,
     )
-    accumulator.add(session.readings)
+    accumulator.add(session.readings, session.time if session.is_raw else None)
     return accumulator.result(motion=motion, false_alarm=false_alarm)
