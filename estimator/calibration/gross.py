@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from estimator.applied_vector import EARTH_RATE, STANDARD_GRAVITY
-from estimator.calibration.gross_choice import Choice, chosen
+from estimator.calibration.gross_choice import GrossChoice, chosen
 from estimator.calibration.gross_linear import harmonics, live, nothing_predicted, regression, sticks_out
 from estimator.calibration.gross_slips import stuck
 from estimator.on_demand import function_on_demand
@@ -39,12 +39,11 @@ def without_gross(sessions: Sequence[CalibrationSession]) -> list[CalibrationSes
         return [session if session.set_aside else in_orientations(session) for session in sessions]
     basis = harmonics(first)
     readings = np.stack([session.readings for session in sessions])
-    suspicious = sticks_out(basis, readings, np.stack([stated(session) for session in sessions])) | stuck(readings).any(
-        axis=-2
-    )
+    errors = np.stack([stated(session) for session in sessions])
+    suspicious = np.asarray((sticks_out(basis, readings, errors) | stuck(readings).any(axis=-2)).any(axis=-1))
     return [
         on_stand(session, basis) if doubt and not session.set_aside else session
-        for session, doubt in zip(sessions, suspicious.any(axis=-1), strict=True)
+        for session, doubt in zip(sessions, suspicious, strict=True)
     ]
 
 
@@ -57,7 +56,8 @@ def on_stand(session: CalibrationSession, basis: Array) -> CalibrationSession:
 def in_orientations(session: CalibrationSession) -> CalibrationSession:
     """The same in unknown orientations: accelerometers by each other and gravity, gyros by their own rest."""
     u, gyro = session.readings, np.array([s.kind != ACCELEROMETER for s in session.sensors])
-    predicted, row_suspects = nothing_predicted(u), {}
+    predicted = nothing_predicted(u)
+    row_suspects: dict[int, tuple[int, ...]] = {}
     if gyro.any():
         courses = [np.ones(len(u))]
         if session.temperature is not None:
@@ -93,7 +93,7 @@ def per_input(session: CalibrationSession) -> Array:
     return np.array([s.nominal_scale * (1.0 if s.kind == ACCELEROMETER else time) for s in session.sensors])
 
 
-def with_set_aside(session: CalibrationSession, choice: Choice) -> CalibrationSession:
+def with_set_aside(session: CalibrationSession, choice: GrossChoice) -> CalibrationSession:
     """The session with what was chosen set aside."""
     if not choice.at.any():
         return session
@@ -104,7 +104,7 @@ def with_set_aside(session: CalibrationSession, choice: Choice) -> CalibrationSe
     return replace(session, readings=readings, standard_errors=errors, set_aside=named(session, choice))
 
 
-def named(session: CalibrationSession, choice: Choice) -> tuple[SetAside, ...]:
+def named(session: CalibrationSession, choice: GrossChoice) -> tuple[SetAside, ...]:
     """What was set aside, by row; a stretch of one reading is one thing."""
     u, unit, predicted = session.readings, per_input(session), choice.predicted
     found, done = list[SetAside](), np.zeros(u.shape, dtype=bool)

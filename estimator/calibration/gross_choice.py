@@ -45,7 +45,7 @@ CUT = 0.05
 
 
 @dataclass(frozen=True, eq=False)
-class Choice:
+class GrossChoice:
     """What of a session is set aside. R rows, m sensors."""
 
     at: Array
@@ -63,7 +63,7 @@ class Choice:
 
 def chosen(
     session: CalibrationSession, predicted: Predicted, suspects: Mapping[int, tuple[int, ...]] | None = None
-) -> Choice:
+) -> GrossChoice:
     """The readings to set aside, by what was ``predicted``; ``suspects`` by row as in `Choice`."""
     held, cut = standing_still(session, predicted), clipped(session, predicted)
     for j, who in (suspects or {}).items():
@@ -88,7 +88,7 @@ def chosen(
     for j, who in doubtful.items():
         at[j] |= felt
         slips[j, who[0]] = slips.get((j, who[0]), "unknown")
-    return Choice(at, predicted, slips, doubtful)
+    return GrossChoice(at, predicted, slips, doubtful)
 
 
 def apart(size: Array) -> Array:

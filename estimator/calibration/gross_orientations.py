@@ -76,7 +76,7 @@ ODDS = 20.0
 
 
 @dataclass(frozen=True, eq=False)
-class Block:
+class RobustBlock:
     """Accelerometers that answer, prepared. R rows, k of them."""
 
     rows: ModelRows
@@ -106,7 +106,7 @@ class BlockFit:
     quadratic: bool
 
 
-def fit_robustly(block: Block, left_out: Array) -> BlockFit | None:
+def fit_robustly(block: RobustBlock, left_out: Array) -> BlockFit | None:
     """The block's fit to what agrees; readings ``left_out`` (R, k) bool take no part to begin with. None where the rows
     are too few for it."""
     rows, (R, k) = block.rows, block.rows.y.shape
@@ -114,7 +114,7 @@ def fit_robustly(block: Block, left_out: Array) -> BlockFit | None:
     if spare < FREEDOM:
         return None
     quadratic = 2 * spare > R * (k - 2)
-    core, begin = core_of(rows, left_out.any(axis=1))
+    core, begin = core_of(rows, np.asarray(left_out.any(axis=1)))
     fit = refitted(block, begin, np.tile(core[:, None], (1, k)), quadratic=False)
     fit = refitted(block, *row_by_row(block, fit, left_out), quadratic)
     seen = set[bytes]()
@@ -167,7 +167,7 @@ def row_squares(rows: ModelRows, unknowns: Unknowns) -> Array:
     return np.asarray(((rows.y - unknowns.offset - directions @ sensitive.T) ** 2).sum(axis=1))
 
 
-def row_by_row(block: Block, fit: BlockFit, left_out: Array) -> tuple[Unknowns, Array]:
+def row_by_row(block: RobustBlock, fit: BlockFit, left_out: Array) -> tuple[Unknowns, Array]:
     """The fit's unknowns with every row's own orientation, and (R, k) bool the readings that agree in it: a row that
     does not fit together loses one reading after the other, as long as two are left."""
     k = block.rows.y.shape[1]
@@ -178,7 +178,7 @@ def row_by_row(block: Block, fit: BlockFit, left_out: Array) -> tuple[Unknowns, 
     for j in np.flatnonzero(square > k + AGREES**2):
         off = ~agrees[j]
         while k - off.sum() > 2:
-            tried = without_each(block, fit, j, off, SPREAD)
+            tried = without_each(block, fit, int(j), off, SPREAD)
             directions[j] = tried.direction[-1]
             if tried.whole <= k + AGREES**2:
                 break
@@ -188,7 +188,7 @@ def row_by_row(block: Block, fit: BlockFit, left_out: Array) -> tuple[Unknowns, 
     return replace(fit.unknowns, directions=directions), agrees
 
 
-def refitted(block: Block, unknowns: Unknowns, agrees: Array, quadratic: bool) -> BlockFit:
+def refitted(block: RobustBlock, unknowns: Unknowns, agrees: Array, quadratic: bool) -> BlockFit:
     """The fit to the readings that ``agrees`` (R, k) bool says, from ``unknowns``."""
     rows = block.rows
     floor = np.where(block.stated, 1.0, LEAST / rows.sigma)
@@ -251,7 +251,7 @@ class WithoutEach:
     """(k + 1, 3) the orientation, unit vectors."""
 
 
-def without_each(block: Block, fit: BlockFit, row: int, off: Array, spread: float = 1.0) -> WithoutEach:
+def without_each(block: RobustBlock, fit: BlockFit, row: int, off: Array, spread: float = 1.0) -> WithoutEach:
     """Of a row, its orientation looked for from everywhere, and of two as good (of three readings, mirrored ones) the
     one nearer what was read; ``off`` (k,) bool: readings that take no part anyway; ``spread``: times its sigma."""
     k, tried = block.rows.y.shape[1], len(TRIED) + 1
@@ -276,7 +276,7 @@ def without_each(block: Block, fit: BlockFit, row: int, off: Array, spread: floa
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class GrossFound:
     """Of the accelerometers ``felt`` (m,) bool."""
 
     felt: Array
@@ -289,7 +289,7 @@ class Found:
         return whole.with_sensors(self.felt, self.predicted), self.suspects
 
 
-def accelerometers_predicted(session: CalibrationSession, left_out: Array) -> Found | None:
+def accelerometers_predicted(session: CalibrationSession, left_out: Array) -> GrossFound | None:
     """What the accelerometers of a session should read; None where nothing stands out, or nothing tells it.
 
     ``left_out`` (R, m) bool: readings that take no part to begin with.
@@ -298,7 +298,7 @@ def accelerometers_predicted(session: CalibrationSession, left_out: Array) -> Fo
         felt, _, _ = classified(session)
     except ScheduleError:
         return None
-    block = Block.of(session, felt)
+    block = RobustBlock.of(session, felt)
     out = left_out[:, felt] & (left_out[:, felt].mean(axis=0) <= LEFT_OUT)
     if not out.any() and not stands_out_of(block):
         return None
@@ -306,7 +306,7 @@ def accelerometers_predicted(session: CalibrationSession, left_out: Array) -> Fo
     return None if fit is None else identified(session, block, fit, felt)
 
 
-def stands_out_of(block: Block) -> bool:
+def stands_out_of(block: RobustBlock) -> bool:
     """Whether a reading stands out of what the sensors must have in common, by linear fits alone: the readings in the
     null space of the nominal axes follow the vector that they measure, and that lies on an ellipsoid."""
     rows, (R, k) = block.rows, block.rows.y.shape
@@ -328,7 +328,7 @@ def stands_out_of(block: Block) -> bool:
     return k > 3 and bool(sticks_out(live(along), rows.y @ parity[:, seen], of_parity).any())
 
 
-def identified(session: CalibrationSession, block: Block, fit: BlockFit, felt: Array) -> Found:
+def identified(session: CalibrationSession, block: RobustBlock, fit: BlockFit, felt: Array) -> GrossFound:
     """The fit with every gross reading given to the sensor of its row that is wrong, where the row can tell."""
     chosen, suspects, place = fit.agrees.copy(), dict[int, tuple[int, ...]](), np.flatnonzero(felt)
     directions = fit.unknowns.directions.copy()
@@ -351,7 +351,7 @@ def identified(session: CalibrationSession, block: Block, fit: BlockFit, felt: A
             suspects[j] = tuple(int(place[i]) for i in likely)
     if (chosen != fit.agrees).any():
         fit = refitted(block, replace(fit.unknowns, directions=directions), chosen, fit.quadratic)
-    return Found(felt, fit.predicted.shifted(offsets(session, place)), suspects)
+    return GrossFound(felt, fit.predicted.shifted(offsets(session, place)), suspects)
 
 
 def self_evident(session: CalibrationSession, place: Array, j: int, likely: Array, value: Array) -> Array:

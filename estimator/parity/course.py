@@ -46,7 +46,7 @@ TURNS = 4
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
+class ParityCourse:
     """Parity in T blocks, of m sensors, d = m − 3."""
 
     reference: ParityReference
@@ -153,7 +153,7 @@ def stirring(courses: Array, variance: Array, activity: Array) -> float:
     return max(float(np.quantile(excess, MOST_SWINGS) / chdtri(1, 1 - MOST_SWINGS)), 0.0)
 
 
-def course_of(ledger: Ledger, norm: float | None, rate: float) -> Course | None:
+def course_of(ledger: Ledger, norm: float | None, rate: float) -> ParityCourse | None:
     """Of a recording; None where too little of it can be used.
 
     Parameters
@@ -175,7 +175,9 @@ def course_of(ledger: Ledger, norm: float | None, rate: float) -> Course | None:
     signals, sizes = known_motion(blocks, nuisance, reference, white)
     size = norm or float(np.sqrt((reference.vector(blocks.mean) ** 2).sum(axis=1).mean()))
     swings = rate / blocks.samples if norm is not None and not blocks.spin.shape[1] else None
-    return Course(reference, blocks, start, span, total, white, p @ white, halves @ white, signals, sizes, size, swings)
+    return ParityCourse(
+        reference, blocks, start, span, total, white, p @ white, halves @ white, signals, sizes, size, swings
+    )
 
 
 def coarse(blocks: Blocks) -> tuple[Blocks, int, int]:

@@ -16,12 +16,12 @@ from math import sqrt
 import numpy as np
 from scipy.special import ndtri
 
-from estimator.parity.course import Course, course_of
+from estimator.parity.course import ParityCourse, course_of
 from estimator.parity.ledger import Ledger
 from estimator.parity.reference import FEWEST
 from estimator.parity.results import DELAY, EXCHANGED, NOISE, RAMP, CourseFault
 from estimator.parity.scan import Scan, critical, tail
-from estimator.parity.shapes import Shape, best_onset, lag, shape_of
+from estimator.parity.shapes import FaultShape, best_onset, lag, shape_of
 from estimator.parity.signs import Exchange, Sign, exchange_of, growth_of
 from estimator.parity.standing import Standing, standing
 from estimator.session import Array
@@ -110,7 +110,7 @@ def _dead(one: Standing, ledger: Ledger, rate: float) -> CourseFault:
 class Search:
     """The next fault of a course."""
 
-    course: Course
+    course: ParityCourse
     second: float
     """s of a block of the ledger."""
     rate: float
@@ -189,7 +189,9 @@ class Search:
             return [], []
         return [self._fault(shape, scan, [i, *near], p)], [] if near else [i]
 
-    def _two(self, shape: Shape, scan: Scan, seen: Array, u: Array, p: float) -> tuple[list[CourseFault], list[int]]:
+    def _two(
+        self, shape: FaultShape, scan: Scan, seen: Array, u: Array, p: float
+    ) -> tuple[list[CourseFault], list[int]]:
         """Two sensors that change at one moment; nothing where two do not explain it, or any two would."""
         d, total = len(seen), float(seen @ seen)
         if d < PAIR:
@@ -203,7 +205,7 @@ class Search:
             return [], []
         return [self._fault(shape, scan, [k], p) for k in best], list(best)
 
-    def _fault(self, shape: Shape, scan: Scan, suspects: list[int], p: float) -> CourseFault:
+    def _fault(self, shape: FaultShape, scan: Scan, suspects: list[int], p: float) -> CourseFault:
         """A fault of the first of the suspects, by number; named if it is the only one."""
         unit = {RAMP: 1.0 / (self.course.span * self.second), DELAY: 1.0 / self.rate}.get(shape.kind, 1.0)
         size, sigma = (x * unit / self.course.along(suspects[0])[2] for x in scan.size(shape.shape))
@@ -214,11 +216,11 @@ class Search:
         alone = self.course.p.shape[1] > 1
         suspects = [sign.sensor] if alone else [sign.sensor, *(k for k in range(self.m) if k != sign.sensor)]
         p = tail(sign.z, self.tests, self.freedom)
-        kind, size = (DELAY, (None, None)) if sign.follows else (NOISE, (sign.size, sign.sigma))
-        return [self._dated(sign.shape, suspects, kind, *size, p)], [sign.sensor] if alone else []
+        kind, size, sigma = (DELAY, None, None) if sign.follows else (NOISE, sign.size, sign.sigma)
+        return [self._dated(sign.shape, suspects, kind, size, sigma, p)], [sign.sensor] if alone else []
 
     def _dated(
-        self, shape: Shape, suspects: list[int], kind: str, size: float | None, sigma: float | None, p: float
+        self, shape: FaultShape, suspects: list[int], kind: str, size: float | None, sigma: float | None, p: float
     ) -> CourseFault:
         names = tuple(self.course.reference.names[k] for k in suspects)
         return CourseFault(

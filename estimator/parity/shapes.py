@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from estimator.parity.course import Course
+from estimator.parity.course import ParityCourse
 from estimator.parity.results import DELAY, GAIN, INTERMITTENT, RAMP, STEP
 from estimator.parity.scan import Scan
 from estimator.session import Array
@@ -26,7 +26,7 @@ TOGGLES = 60
 
 
 @dataclass(frozen=True, eq=False)
-class Shape:
+class FaultShape:
     """The best of one kind."""
 
     kind: str
@@ -46,17 +46,17 @@ class Shape:
         return self.square if not self.toggles else CERTAIN * self.square - TOGGLE * self.toggles
 
 
-def entered(course: Course, onsets: Array) -> Array:
+def entered(course: ParityCourse, onsets: Array) -> Array:
     """(T, n) share of every block that lies after the onsets (n,), blocks."""
     return np.clip(course.blocks.first[:, None] + 1.0 - onsets, 0.0, 1.0)
 
 
-def onsets(course: Course) -> Array:
+def onsets(course: ParityCourse) -> Array:
     """(n,) moments that are tried, blocks: never the first block, before which nothing would be sound."""
     return np.arange(PARTS, PARTS * course.total) / PARTS
 
 
-def best_onset(course: Course, scan: Scan, kind: str, factor: Array | None) -> Shape:
+def best_onset(course: ParityCourse, scan: Scan, kind: str, factor: Array | None) -> FaultShape:
     """Of a plain kind: a shift, its integral, or a shift of what the sensor feels (T,) times a size."""
     tried = onsets(course)
     if kind == RAMP:
@@ -69,10 +69,10 @@ def best_onset(course: Course, scan: Scan, kind: str, factor: Array | None) -> S
     mean = float(weight @ tried / weight.sum())
     spread = float(np.sqrt(weight @ (tried - mean) ** 2 / weight.sum()))
     sigma = float(np.hypot(spread, 1.0 / (PARTS * np.sqrt(3))))
-    return Shape(kind, float(square[best]), float(tried[best]), sigma, None, shapes[:, best])
+    return FaultShape(kind, float(square[best]), float(tried[best]), sigma, None, shapes[:, best])
 
 
-def coming_and_going(course: Course, scan: Scan, first: int, until: int) -> Shape:
+def coming_and_going(course: ParityCourse, scan: Scan, first: int, until: int) -> FaultShape:
     """Stretches of one size, from one of them on."""
     T = len(scan.white)
     g = scan.whitened(np.tri(T))
@@ -102,15 +102,15 @@ def coming_and_going(course: Course, scan: Scan, first: int, until: int) -> Shap
     where = np.flatnonzero(on)
     begin, last = float(course.blocks.first[where[0]]), float(course.blocks.first[where[-1]] + 1)
     end = None if where[-1] == T - 1 else last
-    return Shape(INTERMITTENT, square, begin, 0.5, end, on.astype(float), toggles)
+    return FaultShape(INTERMITTENT, square, begin, 0.5, end, on.astype(float), toggles)
 
 
-def lag(course: Course, sensor: int) -> Array:
+def lag(course: ParityCourse, sensor: int) -> Array:
     """(T,) what a sensor loses that answers one sample late, m/s² (rad/s)."""
     return np.asarray(-course.blocks.gain @ course.reference.axes[sensor] / course.blocks.samples)
 
 
-def shape_of(course: Course, scan: Scan, sensor: int, z: Array) -> Shape:
+def shape_of(course: ParityCourse, scan: Scan, sensor: int, z: Array) -> FaultShape:
     """The kind that explains a sensor's course best."""
     felt = course.felt[:, sensor] + course.reference.bias[sensor]
     late = lag(course, sensor)
@@ -119,8 +119,8 @@ def shape_of(course: Course, scan: Scan, sensor: int, z: Array) -> Shape:
     if np.ptp(felt) > 0:
         tried += [best_onset(course, scan, GAIN, felt), best_onset(course, scan, DELAY, late)]
     began = int(np.searchsorted(course.blocks.first, np.floor(plain.since)))
-    best = np.unravel_index(np.abs(z).argmax(), z.shape)
-    starts = ((began, len(scan.white)), (int(best[0]), int(best[1])))
+    place = np.unravel_index(np.abs(z).argmax(), z.shape)
+    starts = ((began, len(scan.white)), (int(place[0]), int(place[1])))
     tried += [s for s in (coming_and_going(course, scan, *start) for start in starts) if s.toggles]
     best = max(tried, key=lambda s: s.worth)
     return best if best.worth > plain.square + SIMPLER else plain

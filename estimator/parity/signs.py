@@ -15,10 +15,10 @@ from scipy.ndimage import median_filter
 from scipy.optimize import nnls
 from scipy.special import chdtri
 
-from estimator.parity.course import FREE, Course
+from estimator.parity.course import FREE, ParityCourse
 from estimator.parity.results import NOISE
 from estimator.parity.scan import NEAR, Scan, colour_of, scan_of
-from estimator.parity.shapes import Shape, best_onset
+from estimator.parity.shapes import FaultShape, best_onset
 from estimator.session import Array
 
 SURE = 60.0
@@ -44,7 +44,7 @@ class Exchange:
     """χ² that it explains."""
 
 
-def exchange_of(course: Course) -> Exchange | None:
+def exchange_of(course: ParityCourse) -> Exchange | None:
     """The likeliest pair, if one is likely."""
     V, reference = course.reference.parity, course.reference
     if V.shape[1] < 2:
@@ -66,7 +66,7 @@ def exchange_of(course: Course) -> Exchange | None:
     return best
 
 
-def _alone(course: Course, weight: Array, before: Array, after: Array) -> bool:
+def _alone(course: ParityCourse, weight: Array, before: Array, after: Array) -> bool:
     """Whether nothing else is as good in the last blocks: not the readings as they are, and not a course of one sensor,
     which has a number for every block to do it with."""
     if after.sum() > LEFT * before.sum():
@@ -82,7 +82,7 @@ class Sign:
     """A course that steps, of one sensor, by number."""
 
     sensor: int
-    shape: Shape
+    shape: FaultShape
     z: float
     size: float
     """m/s² (rad/s), one sigma of a sample."""
@@ -93,7 +93,7 @@ class Sign:
     """Whether the noise is there only as far as the others move."""
 
 
-def growth_of(course: Course) -> Sign | None:
+def growth_of(course: ParityCourse) -> Sign | None:
     """The sensor whose noise grows most surely; None where none does by `GROWN`."""
     best: Sign | None = None
     b, visible = course.blocks, course.reference.visible

@@ -257,7 +257,8 @@ class _Scan:
 
     def parts(self) -> Iterator[CalibrationSession]:
         """Some rows at a time, screened and checked like those of any session."""
-        codes, offset, screen = _Codes(), 0, None
+        codes, offset = _Codes(), 0
+        screen: Screen | None = None
         for frame in self._frames(self._needed()):
             table = self._table(frame, codes)
             if screen is None:

@@ -9,14 +9,18 @@ import pytest
 from benchmarks.study.seen import __main__ as seen
 
 
+def drawn(n: int, seed: int) -> str:
+    return f"| drawn | seed |\n| --- | --- |\n| {n} | {seed} |"
+
+
 @pytest.fixture(autouse=True)
 def parts(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two tables that cost nothing."""
     for name in ("flights", "gross"):
         module = ModuleType(f"benchmarks.study.seen.{name}")
-        module.table = lambda n, seed: f"| drawn | seed |\n| --- | --- |\n| {n} | {seed} |"
+        monkeypatch.setattr(module, "table", drawn, raising=False)
         monkeypatch.setitem(sys.modules, module.__name__, module)
-    sys.modules["benchmarks.study.seen.gross"].TARGET = "all of them."
+    monkeypatch.setattr(sys.modules["benchmarks.study.seen.gross"], "TARGET", "all of them.", raising=False)
 
 
 def made(page: Path, monkeypatch: pytest.MonkeyPatch, *arguments: str) -> str:

@@ -239,7 +239,7 @@ def draw_flight(m: int, rng: np.random.Generator) -> Flight:
     lost = np.zeros(len(t), dtype=bool)
     for _ in range(int(rng.integers(0, 4))):
         first = int(rng.integers(0, len(t)))
-        lost[first : first + int(rng.integers(1, 0.3 * rate))] = True
+        lost[first : first + int(rng.integers(1, int(0.3 * rate)))] = True
     return Flight(unit, rate, inputs, unit.noise * rng.standard_normal(inputs.shape), lost)
 
 
