@@ -85,7 +85,7 @@ class RobustBlock:
     """(k,) reading at y = 1, reading units."""
 
     @classmethod
-    def of(cls, session: CalibrationSession, felt: Array) -> "Block":
+    def of(cls, session: CalibrationSession, felt: Array) -> "RobustBlock":
         """Of the sensors ``felt`` (m,) bool."""
         g = gravity(session.site)
         rows, stated = accelerometer_rows(session, felt, g)

@@ -78,7 +78,7 @@ class ParityAccumulator:
 
         ``time`` (R,) s, of the rows where samples may be missing between them; else they follow at the sample rate.
         """
-        known = np.isfinite(readings).all(axis=1)
+        known = np.asarray(np.isfinite(readings).all(axis=1))
         self._taken.add(known, time)
         self._samples += len(readings)
         self.ledger.add(readings[known] / self._period)
@@ -106,7 +106,7 @@ class ParityAccumulator:
             replace(fault, since=self._taken.at(fault.since), until=fault.until and self._taken.at(fault.until))
             for fault in looked.faults
         )
-        return replace(self._of_all(top), faults=faults, before=before, after=after, **self._course())
+        return replace(self._with_course(self._of_all(top)), faults=faults, before=before, after=after)
 
     def _of_all(self, top: ParityResult) -> ParityResult:
         """With the sensors that took no part, of which nothing is seen."""
@@ -157,17 +157,18 @@ class ParityAccumulator:
         change = freed(selection, ledger.reference, self._norm, allowed)
         return self._judged(ledger, selection, change, ParityEvidence(change), still, false_alarm)
 
-    def _course(self) -> dict[str, Array]:
-        """The fine course of every sensor over the whole recording, for people to look at."""
+    def _with_course(self, result: ParityResult) -> ParityResult:
+        """With the fine course of every sensor over the whole recording, for people to look at."""
         blocks, start, span = coarse(self.ledger.blocks())
         P = self.reference.parity @ self.reference.parity.T
         second = self.ledger.length / (self._rate or self.ledger.length)
         noise = np.median((blocks.halves @ P) ** 2, axis=0) / chdtri(1, 0.5)
-        return {
-            "course_fine": blocks.mean @ P,
-            "course_fine_time": self._taken.at((start + (blocks.first + 0.5) * span) * second),
-            "course_fine_sigma": np.sqrt(noise),
-        }
+        return replace(
+            result,
+            course_fine=blocks.mean @ P,
+            course_fine_time=self._taken.at((start + (blocks.first + 0.5) * span) * second),
+            course_fine_sigma=np.sqrt(noise),
+        )
 
     def _judged(
         self,

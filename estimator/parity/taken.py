@@ -23,7 +23,7 @@ class Taken:
         self._nominal, self._moment = [np.zeros(1)], [np.zeros(1)]
 
     def add(self, used: Array, time: Array | None) -> None:
-        """The next rows: which are ``used`` (R,) bool, and their ``time`` (R,) s; None where they follow at the rate."""
+        """The next rows, ``used`` (R,) bool or not, and their ``time`` (R,) s; None where they follow at the rate."""
         at = (self._rows + np.arange(len(used))) / self._rate
         if time is not None and len(time) and np.ptp(time) > 0:
             self._begin = float(time[0]) if self._begin is None else self._begin

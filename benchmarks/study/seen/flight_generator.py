@@ -202,20 +202,20 @@ def motion(seconds: float, rate: float, rng: np.random.Generator) -> tuple[Array
             "climb": (0.0, rng.uniform(-0.4, 0.4), 1.0), "rest": (0.0, 0.0, 0.0),
         }[str(what)]  # fmt: skip
         legs.append(np.tile([roll, pitch, power], (n, 1)))
-    roll, pitch, power = gaussian_filter1d(np.concatenate(legs)[:count], rng.uniform(0.5, 1.5) * rate, axis=0).T
-    power = gaussian_filter1d(power, 2 * rate)
+    roll, pitch, thrust = gaussian_filter1d(np.concatenate(legs)[:count], rng.uniform(0.5, 1.5) * rate, axis=0).T
+    thrust = gaussian_filter1d(thrust, 2 * rate)
     gust = gaussian_filter1d(rng.standard_normal((count, 3)), 0.3 * rate, axis=0)
-    gust *= rng.uniform(0, 0.05) * power[:, None] / gust.std()
+    gust *= rng.uniform(0, 0.05) * thrust[:, None] / gust.std()
     roll, pitch = roll + gust[:, 0], pitch + gust[:, 1]
     turn = G * np.tan(roll) / rng.uniform(25, 60) + gust[:, 2]
     attitude = Rotation.from_euler("ZYX", np.column_stack([np.cumsum(turn) / rate, pitch, roll]))
-    ahead = gaussian_filter1d(rng.uniform(0.5, 3) * np.gradient(power, 1 / rate), rate)
+    ahead = gaussian_filter1d(rng.uniform(0.5, 3) * np.gradient(thrust, 1 / rate), rate)
     flown = np.column_stack([ahead, np.zeros(count), np.zeros(count)])
     lift = np.column_stack([G * np.sin(pitch), np.zeros(count), -G * np.cos(pitch) / np.cos(roll)])
     still = attitude.inv().apply(np.tile([0.0, 0.0, -G], (count, 1)))
     f = (still if rng.uniform() < 0.4 else lift) + flown
     omega = np.vstack([np.zeros(3), (attitude[:-1].inv() * attitude[1:]).as_rotvec() * rate])
-    return np.asarray(f), np.asarray(omega), np.asarray(power)
+    return np.asarray(f), np.asarray(omega), np.asarray(thrust)
 
 
 def draw_flight(m: int, rng: np.random.Generator) -> Flight:
