@@ -21,7 +21,7 @@ MOST = {"sessions": 1000, "units": 1000, "unit-types": 1000, "uploads": 50}
 """How long a list may be."""
 ADMIN, SECRET = "a.admin", 30
 """An account, and the characters that a secret has and other words of a command have not."""
-PENDING = "still being made"
+PENDING = "still running"
 """Said by a refusal of what rests on a diagnosis that is not there yet: documented, and to be asked again."""
 
 
