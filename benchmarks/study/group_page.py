@@ -69,9 +69,9 @@ An engineer accepts an effect for the unit, every unit of a type, or whatever is
 HTTP, or
 
 ```
-imu-health models accept stand ODG-1 beta-eccentricity --by "K. Ito" --why "encoder looked at"
-imu-health models show 7
-imu-health models withdraw 7 --by "K. Ito" --why "encoder aligned on 3 May"
+curl -s -H 'Content-Type: application/json' -d '{"cause": "beta-eccentricity", "by": "K. Ito", "note": "encoder looked at"}' http://127.0.0.1:8000/api/v1/stands/ODG-1/diagnosis/accept
+curl -s http://127.0.0.1:8000/api/v1/models/7
+curl -s -H 'Content-Type: application/json' -d '{"by": "K. Ito", "why": "encoder aligned on 3 May"}' http://127.0.0.1:8000/api/v1/models/7/withdraw
 ```
 
 * Its size is the group's (only a varying effect is estimated in each session). It is subtracted from the readings, and
