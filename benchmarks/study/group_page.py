@@ -65,14 +65,8 @@ type and stand, and by [the API](../api.md#diagnosis-and-models).
 
 ## Accepted into a model
 
-An engineer accepts an effect for the unit, every unit of a type, or whatever is measured on a stand: on the page, over
-HTTP, or
-
-```
-curl -s -H 'Content-Type: application/json' -d '{"cause": "beta-eccentricity", "by": "K. Ito", "note": "encoder looked at"}' http://127.0.0.1:8000/api/v1/stands/ODG-1/diagnosis/accept
-curl -s http://127.0.0.1:8000/api/v1/models/7
-curl -s -H 'Content-Type: application/json' -d '{"by": "K. Ito", "why": "encoder aligned on 3 May"}' http://127.0.0.1:8000/api/v1/models/7/withdraw
-```
+An engineer accepts an effect for the unit, every unit of a type, or whatever is measured on a stand: on the page or
+by `POST /stands/{name}/diagnosis/accept`, and takes it back by `POST /models/{id}/withdraw`.
 
 * Its size is the group's (only a varying effect is estimated in each session). It is subtracted from the readings, and
   its σ and spread τ enter every parameter's uncertainty.
