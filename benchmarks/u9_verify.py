@@ -13,11 +13,12 @@ import httpx
 from benchmarks.figures import Felt, start
 from benchmarks.p10_startup import COMMAND
 from benchmarks.u2_uploads import serving
-from service.papers.sealing import seal_of, seal_room
+from service.papers.sealing import seal_of
 from service.papers.verifying.records import Outcome, RawFile
 from service.papers.verifying.verify import Beside, verify
 from tests.service.made_sessions import FAILED
 from tests.service.papers.mutations import mutated
+from tests.service.papers.trial_key import trial_key
 
 ROUNDS, MUTATIONS = 5, 200
 LIMIT = 5.0
@@ -30,7 +31,7 @@ def run() -> Iterator[Felt]:
     with tempfile.TemporaryDirectory(prefix="imu-u9-", ignore_cleanup_errors=True) as name:
         folder = Path(name)
         key = folder / "seal.pem"
-        key.write_bytes(seal_room("trial").make_trial_key("U9", datetime.now(UTC)))
+        key.write_bytes(trial_key("U9", datetime.now(UTC)))
         seal = seal_of(key, None)
         assert seal is not None
         sealed, trusted = seal.xml(certificate(name)), TRUSTED + key.read_bytes().split(TRUSTED)[1]

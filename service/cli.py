@@ -60,8 +60,7 @@ class Commands(TyperGroup):
 @cache
 def _command(name: str) -> Any:
     module, _, member = CATALOGUE[name].home.partition(".")
-    loaded = import_module(f"service.commands.{module}")
-    found = getattr(loaded, member) if member else import_module("service.commands.calls").app_of(name, loaded.COMMANDS)
+    found = getattr(import_module(f"service.commands.{module}"), member)
     if not isinstance(found, typer.Typer):
         single = typer.Typer(add_completion=False)
         single.command(name)(found)

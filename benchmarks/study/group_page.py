@@ -65,14 +65,8 @@ type and stand, and by [the API](../api.md#diagnosis-and-models).
 
 ## Accepted into a model
 
-An engineer accepts an effect for the unit, every unit of a type, or whatever is measured on a stand: on the page, over
-HTTP, or
-
-```
-imu-health models accept stand ODG-1 beta-eccentricity --by "K. Ito" --why "encoder looked at"
-imu-health models show 7
-imu-health models withdraw 7 --by "K. Ito" --why "encoder aligned on 3 May"
-```
+An engineer accepts an effect for the unit, every unit of a type, or whatever is measured on a stand: on the page or
+by `POST /stands/{name}/diagnosis/accept`, and takes it back by `POST /models/{id}/withdraw`.
 
 * Its size is the group's (only a varying effect is estimated in each session). It is subtracted from the readings, and
   its σ and spread τ enter every parameter's uncertainty.

@@ -32,11 +32,6 @@ class Connection:
         answer: Json = self.answer("POST", path, json=body).json()
         return answer
 
-    def put(self, path: str, body: Json) -> Json:
-        """Replaces a resource below /api/v1 with JSON."""
-        answer: Json = self.answer("PUT", path, json=body).json()
-        return answer
-
     def send(
         self, name: str, content: bytes | IO[bytes], stated: dict[str, str] | None = None, *, later: bool = False
     ) -> Json:

@@ -1,4 +1,4 @@
-"""`imu-health user`, `token`, `audit`: accounts, for whoever has access to the database."""
+"""`imu-health user` and `token`: accounts, for whoever has access to the database."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -9,9 +9,9 @@ import typer
 from rich.markup import escape
 from rich.table import Table
 
-from service.commands.console import AsLines, FormOf, ListOutput, rows_of, screen, table_of
+from service.commands.console import AsLines, ListOutput, rows_of, screen, table_of
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
-from service.commands.speech import FAILED, say
+from service.commands.speech import say
 from service.errors import ConflictError
 from service.kit.person import COMMAND_LINE as WHO
 from service.kit.person import Account, Role, Token
@@ -21,12 +21,10 @@ from service.people.sign_in_elsewhere import connect
 from service.people.store import Accounts, Tokens
 from service.settings import Settings
 from service.storage import Files, Storage
-from service.storage.audit import Audit, AuditLine
 from service.storage.queries import Store
 
 user = typer.Typer(name="user", add_completion=False, no_args_is_help=True, help="Make and change accounts.")
 token = typer.Typer(name="token", add_completion=False, no_args_is_help=True, help="Make and revoke tokens.")
-audit = typer.Typer(name="audit", add_completion=False, no_args_is_help=True, help="Read and check the audit trail.")
 Login = Annotated[str, typer.Argument(metavar="LOGIN", help="The account's login.", show_default=False)]
 RoleOf = Annotated[Role, typer.Option("--role", help="What they may do.", show_default=False)]
 
@@ -103,13 +101,11 @@ def change_user(
 
 
 @user.command("list")
-def list_users(
-    database_url: DatabaseUrl = None, data_folder: DataFolder = None, form: FormOf = None, as_json: AsLines = False
-) -> None:
+def list_users(database_url: DatabaseUrl = None, data_folder: DataFolder = None, as_json: AsLines = None) -> None:
     """Print every account."""
     with _read(settings_from(database_url=database_url, data_folder=data_folder)) as store:
         accounts = Accounts(store).every()
-    ListOutput(form, as_json).show(rows_of(accounts), lambda: _accounts(accounts))
+    ListOutput.of(as_json).show(rows_of(accounts), lambda: _accounts(accounts))
 
 
 def _accounts(accounts: Sequence[Account]) -> Table:
@@ -151,13 +147,11 @@ def take_token(
 
 
 @token.command("list")
-def list_tokens(
-    database_url: DatabaseUrl = None, data_folder: DataFolder = None, form: FormOf = None, as_json: AsLines = False
-) -> None:
+def list_tokens(database_url: DatabaseUrl = None, data_folder: DataFolder = None, as_json: AsLines = None) -> None:
     """Print every token; secrets are not kept."""
     with _read(settings_from(database_url=database_url, data_folder=data_folder)) as store:
         tokens = Tokens(store).every()
-    ListOutput(form, as_json).show(rows_of(tokens), lambda: _tokens(tokens))
+    ListOutput.of(as_json).show(rows_of(tokens), lambda: _tokens(tokens))
 
 
 def _tokens(tokens: Sequence[Token]) -> Table:
@@ -165,49 +159,6 @@ def _tokens(tokens: Sequence[Token]) -> Table:
     for listed in tokens:
         days = (f"{at:%Y-%m-%d}" if at else "" for at in (listed.expires_at, listed.last_used_at, listed.revoked_at))
         table.add_row(str(listed.id), escape(listed.login), escape(listed.label), listed.role, *days)
-    return table
-
-
-@audit.command("verify")
-def verify(
-    expect: Annotated[
-        str, typer.Option(metavar="HASH", help="Last hash that was noted before; it must still be there.")
-    ] = "",
-    database_url: DatabaseUrl = None,
-    data_folder: DataFolder = None,
-) -> None:
-    """Work out the chain of the whole trail again. Note the last hash elsewhere: it shows later that none was cut."""
-    with _read(settings_from(database_url=database_url, data_folder=data_folder)) as store:
-        check, is_there = Audit(store).check(), not expect or Audit(store).has(expect)
-    if check.broken is not None:
-        say(f"Line {check.broken} does not follow from the lines before it: the trail was changed there.")
-        raise typer.Exit(FAILED)
-    if not is_there:
-        say("The hash that was noted is not in the trail: lines were cut off, or it is another trail.")
-        raise typer.Exit(FAILED)
-    screen().print(f"All lines ({check.lines}) follow from one another. Last hash: {check.last}")
-
-
-@audit.command("list")
-def list_lines(
-    subject: Annotated[str | None, typer.Option(help="Only what was done to this.", show_default="all")] = None,
-    most: Annotated[int, typer.Option(min=1, max=100_000, help="How many lines.")] = 50,
-    database_url: DatabaseUrl = None,
-    data_folder: DataFolder = None,
-    *,
-    form: FormOf = None,
-    as_json: AsLines = False,
-) -> None:
-    """Print who did what, the newest first."""
-    with _read(settings_from(database_url=database_url, data_folder=data_folder)) as store:
-        lines = Audit(store).page(most, None, subject)
-    ListOutput(form, as_json).show(rows_of(lines), lambda: _lines(lines))
-
-
-def _lines(lines: Sequence[AuditLine]) -> Table:
-    table = table_of("when", "who", "account", "what", "to")
-    for line in lines:
-        table.add_row(f"{line.at:%Y-%m-%d %H:%M}", *map(escape, (line.who, line.account, line.action, line.subject)))
     return table
 
 

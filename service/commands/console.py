@@ -1,6 +1,6 @@
 """Shared parts of commands: options, handling of unusable files, and output.
 
-A list is a table on a terminal, one JSON object a line in a pipe, or in the form of `--format`.
+A list is a table on a terminal and one JSON object a line in a pipe, unless one of them is asked for.
 """
 
 import json
@@ -9,7 +9,6 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from datetime import datetime
-from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
@@ -26,23 +25,14 @@ from service.languages.language import Language
 T = TypeVar("T")
 
 
-class OutputForm(StrEnum):
-    """Output form of a list."""
-
-    TABLE = "table"
-    JSON = "json"
-    JSONL = "jsonl"
-
-
-FormOf = Annotated[
-    OutputForm | None,
+AsLines = Annotated[
+    bool | None,
     typer.Option(
-        "--format",
-        help="table; json: one document; jsonl: one object a line.",
-        show_default="table on a terminal, jsonl in a pipe",
+        "--json/--table",
+        help="JSON, one object a line, or a table.",
+        show_default="a table on a terminal, JSON in a pipe",
     ),
 ]
-AsLines = Annotated[bool, typer.Option("--json", help="The same as --format jsonl.")]
 Files = Annotated[list[Path], typer.Argument(metavar="FILE", help="Session files.", show_default=False)]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON: one object; with several files one a line.")]
 Server = Annotated[str, typer.Option(help="Address of the service.", envvar="IMU_HEALTH_SERVER")]
@@ -151,41 +141,35 @@ def progress(total: int, doing: str, *, quiet: bool = False, is_long: bool = Fal
 
 @dataclass(frozen=True)
 class ListOutput:
-    """Requested form of a list."""
+    """Form of a list: JSON, one object a line, or a table."""
 
-    chosen: OutputForm | None
-    as_lines: bool = False
+    as_lines: bool
 
-    @property
-    def form(self) -> OutputForm:
+    @classmethod
+    def of(cls, chosen: bool | None) -> "ListOutput":
         """The chosen form, else that for a terminal or a pipe."""
-        if self.chosen is not None:
-            return self.chosen
-        return OutputForm.JSONL if self.as_lines or not sys.stdout.isatty() else OutputForm.TABLE
+        return cls(not sys.stdout.isatty() if chosen is None else chosen)
 
     @property
     def language(self) -> str:
         """Of what is listed: JSON never depends on it."""
-        return output_language() if self.form is OutputForm.TABLE else Language.ENGLISH.value
+        return Language.ENGLISH.value if self.as_lines else output_language()
 
     def show(self, rows: Sequence[Any], view: Callable[[], RenderableType]) -> None:
         """Prints the rows as they were answered, or their view."""
-        if self.form is OutputForm.TABLE:
+        if not self.as_lines:
             screen().print(view())
-        elif self.form is OutputForm.JSON:
-            print_json(list(rows))
-        else:
-            for row in rows:
-                print_json(row)
+            return
+        for row in rows:
+            print_json(row)
 
 
 def rows_of(records: Sequence[Any]) -> list[dict[str, Any]]:
     """Records as JSON, times in ISO 8601."""
-    return [{name: plain(value) for name, value in asdict(record).items()} for record in records]
+    return [{name: _plain(value) for name, value in asdict(record).items()} for record in records]
 
 
-def plain(value: Any) -> Any:
-    """As JSON has it: times in ISO 8601."""
+def _plain(value: Any) -> Any:
     return value.isoformat() if isinstance(value, datetime) else value
 
 

@@ -27,15 +27,11 @@ database = typer.Typer(
 
 
 @database.command("upgrade")
-def upgrade_schema(
-    database_url: DatabaseUrl = None,
-    data_folder: DataFolder = None,
-    revision: Annotated[str, typer.Option(help="Revision to go up to.")] = "head",
-) -> None:
+def upgrade_schema(database_url: DatabaseUrl = None, data_folder: DataFolder = None) -> None:
     """Bring the schema up to what this version needs; safe to run again."""
     settings = settings_from(database_url=database_url, data_folder=data_folder)
-    upgrade(settings.database, revision)
-    typer.echo(f"The schema is at {revision}.")
+    upgrade(settings.database)
+    typer.echo("The schema is at head.")
 
 
 @database.command("downgrade", context_settings={"ignore_unknown_options": True})
@@ -44,10 +40,7 @@ def downgrade_schema(
     database_url: DatabaseUrl = None,
     data_folder: DataFolder = None,
     yes: Annotated[bool, typer.Option("--yes", help="Do not ask; needed where nobody can answer.")] = False,
-    backup: Annotated[
-        Path | None, typer.Option(help="Where to write a backup first.", show_default="a new file in the data folder")
-    ] = None,
-    no_backup: Annotated[bool, typer.Option("--no-backup", help="Write no backup first.")] = False,
+    no_backup: Annotated[bool, typer.Option("--no-backup", help="Write no backup into the data folder first.")] = False,
 ) -> None:
     """Take the schema back to an earlier revision; says what will be deleted, asks, and writes a backup first."""
     settings = settings_from(database_url=database_url, data_folder=data_folder)
@@ -57,7 +50,7 @@ def downgrade_schema(
     if expected_losses and not yes:
         _confirm()
     if expected_losses and not no_backup:
-        _write_backup(settings, backup)
+        _write_backup(settings)
     downgrade(settings.database, revision)
     typer.echo(f"The schema is at {revision}.")
 
@@ -70,9 +63,9 @@ def _confirm() -> None:
     raise typer.Exit(FAILED)
 
 
-def _write_backup(settings: Settings, target: Path | None) -> None:
+def _write_backup(settings: Settings) -> None:
     now = datetime.now(UTC)
-    file = target or settings.data_folder / f"before-downgrade-{now:%Y%m%d-%H%M%S}.backup"
+    file = settings.data_folder / f"before-downgrade-{now:%Y%m%d-%H%M%S}.backup"
     lost = write_backup(settings.database, Files(settings.files), file, now).lost
     say(f"Backup: {file}" + (f", without {counted(len(lost), 'uploaded file')}, missing or damaged." if lost else "."))
 

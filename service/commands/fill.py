@@ -22,9 +22,6 @@ LINES = 20
 def fill(
     units: Annotated[int, typer.Option(min=1, max=20_000, help="How many.")] = 300,
     seed: Annotated[int, typer.Option(min=0, help="The same number gives the same fleet.")] = 1,
-    workers: Annotated[
-        int | None, typer.Option(min=1, max=64, help="Processes.", show_default="one a processor")
-    ] = None,
     database_url: DatabaseUrl = None,
     data_folder: DataFolder = None,
 ) -> None:
@@ -37,7 +34,7 @@ def fill(
             raise ConflictError("There are units already: fill an empty database, --data-folder names one.")
     planned, start, done = plan(units, seed), monotonic(), 0
     say(f"{many(units, 'simulated unit')}, {many(planned.files, 'session')}.")
-    for sessions in fill_many(settings, planned, utc_now(), workers or os.cpu_count() or 1):
+    for sessions in fill_many(settings, planned, utc_now(), os.cpu_count() or 1):
         before, done = done, done + sessions
         if done * LINES // planned.files > before * LINES // planned.files:
             left = (monotonic() - start) * (planned.files - done) / done

@@ -1,55 +1,60 @@
-"""`imu-health fleet` and `history`: the condition of a running service's units, and their parameters through time."""
+"""`imu-health fleet`, `history`, `usable` and `flags`: the condition of a running service's units."""
 
 from datetime import datetime
-from typing import Annotated
+from itertools import takewhile
+from typing import TYPE_CHECKING, Annotated
+from urllib.parse import quote
 
 import typer
 from rich.console import Group
 from rich.markup import escape
 from rich.table import Table
+from rich.text import Text
 
 from estimator.allan.results import TERMS
+from estimator.json_object import Json
+from estimator.on_demand import function_on_demand
 from estimator.wording import counted
 from service.client import Point, connect
-from service.commands.calls import Answer
-from service.commands.console import DEFAULT_SERVER, AsLines, FormOf, ListOutput, Server, table_of
-from service.commands.speech import output_language, translated
+from service.commands.console import DEFAULT_SERVER, AsJson, AsLines, ListOutput, Server, print_json, screen, table_of
+from service.commands.speech import FAILED, output_language, translated
 from service.commands.upload import coloured
+from service.flags.records import FlagState
+from service.judging.use import Use, in_words
 from service.kit.measures import deviation_measure, measured, number
+from service.languages.language import Language
 from service.sessions.decision import Verdict
 from service.sessions.records import ALL_PARAMETERS
 from service.sessions.words.conditions import WITH_RESERVATION
 from service.sessions.words.noise import size_in_words
 
+if TYPE_CHECKING:
+    from service.groups.words import place_in_words
+else:
+    place_in_words = function_on_demand("service.groups.words", "place_in_words")
+
 KNOWN = (*ALL_PARAMETERS, *TERMS)
 """Parameters of a history."""
+FLAG_COLOURS = {FlagState.RAISED: "red", FlagState.ACKNOWLEDGED: "yellow", FlagState.RESOLVED: "green"}
+"""Red needs attention."""
+USE_COLOURS = {Use.YES: "green", Use.RESERVED: "yellow", Use.NO: "bold red", Use.PENDING: "bold red"}
 Stand = Annotated[str | None, typer.Option(help="Only those last measured on this stand.", show_default="all")]
-UnitType = Annotated[str | None, typer.Option("--unit-type", help="Only those of this type.", show_default="all")]
 DueBefore = Annotated[
     datetime | None, typer.Option(help="Only those whose next calibration is due before, UTC.", show_default="all")
 ]
-Flagged = Annotated[bool, typer.Option("--flagged", help="Only those with an open flag.")]
 Unit = Annotated[str, typer.Argument(metavar="UNIT", help="Serial number.")]
 Sensor = Annotated[str | None, typer.Option(help="Only of this sensor.", show_default="all")]
 Parameter = Annotated[str | None, typer.Option(help=f"Only one of {', '.join(KNOWN)}.", show_default="all")]
 Since = Annotated[datetime | None, typer.Option(help="Measured at that time or later, UTC.", show_default="the first")]
-Until = Annotated[datetime | None, typer.Option(help="Measured before that time, UTC.", show_default="the last")]
 
 
 def fleet(
-    server: Server = DEFAULT_SERVER,
-    form: FormOf = None,
-    as_json: AsLines = False,
-    *,
-    stand: Stand = None,
-    unit_type: UnitType = None,
-    due_before: DueBefore = None,
-    flagged: Flagged = False,
+    server: Server = DEFAULT_SERVER, as_json: AsLines = None, stand: Stand = None, due_before: DueBefore = None
 ) -> None:
-    """Show every unit with its condition, the worst first; some of them by stand, type, due date or flag."""
+    """Show every unit with its condition, the worst first; some of them by stand or due date."""
     due = None if due_before is None else f"{due_before.isoformat()}Z"
-    filters = {"stand": stand, "unit_type": unit_type, "due_before": due, "flagged": flagged or None}
-    listing = ListOutput(form, as_json)
+    filters = {"stand": stand, "due_before": due}
+    listing = ListOutput.of(as_json)
     with connect(server, language=listing.language) as client:
         condition = client.get("/fleet").json()
         units = [unit.document for unit in client.units(**filters)]
@@ -59,7 +64,7 @@ def fleet(
     listing.show(units, lambda: Group(heading, _fleet_table(units)))
 
 
-def _summary(condition: Answer) -> str:
+def _summary(condition: Json) -> str:
     """``12 units, 12 of them simulated: 1 Unfit, …``"""
     counts = {Verdict(name): count for name, count in condition["verdicts"].items() if count}
     references = condition["references"]
@@ -70,13 +75,13 @@ def _summary(condition: Answer) -> str:
     return f"{translated(counted(condition['units'], 'unit'))}{simulated}: {', '.join(parts)}\n"
 
 
-def _counted(verdict: Verdict, count: int, condition: Answer) -> str:
+def _counted(verdict: Verdict, count: int, condition: Json) -> str:
     """``5 Fit (2 with reservation)``"""
     reserved = condition["reserved"][verdict]
     return f"{count} {coloured(verdict)}{f' ({reserved} {translated(WITH_RESERVATION)})' if reserved else ''}"
 
 
-def _fleet_table(units: list[Answer]) -> Table:
+def _fleet_table(units: list[Json]) -> Table:
     headings = ("unit", "type", "condition", "margin", "last session", "sessions", "why")
     table = table_of(*headings, right=("margin", "sessions"))
     for unit in units:
@@ -97,11 +102,9 @@ def history(
     sensor: Sensor = None,
     parameter: Parameter = None,
     since: Since = None,
-    until: Until = None,
     *,
     server: Server = DEFAULT_SERVER,
-    form: FormOf = None,
-    as_json: AsLines = False,
+    as_json: AsLines = None,
 ) -> None:
     """Show the parameters of a unit through time, each beside its reference and its tolerance.
 
@@ -109,8 +112,8 @@ def history(
     with 95 %.
     """
     with connect(server, language=output_language()) as client:
-        points = list(client.history(unit, sensor=sensor, parameter=parameter, since=since, until=until))
-    ListOutput(form, as_json).show([point.document for point in points], lambda: _history_table(points))
+        points = list(client.history(unit, sensor=sensor, parameter=parameter, since=since))
+    ListOutput.of(as_json).show([point.document for point in points], lambda: _history_table(points))
 
 
 def _history_table(points: list[Point]) -> Table:
@@ -140,3 +143,56 @@ def _numbers(point: Point) -> tuple[str, str]:
     unit = deviation_measure(point.kind, point.parameter, point.deviation or 0.0)
     off = "" if point.deviation is None else measured(point.deviation, point.expanded, unit)
     return off, "" if tolerance is None else measured(tolerance, None, unit)
+
+
+def usable(unit: Unit, server: Server = DEFAULT_SERVER, as_json: AsJson = False) -> None:
+    """Say whether a unit may be used: exit code 0 for yes, 1 for no, for a unit nobody knows, and in doubt."""
+    language = Language.ENGLISH.value if as_json else output_language()
+    with connect(server, language=language) as client:
+        answer: Json = client.get(f"/units/{quote(unit, safe='')}/usable").json()
+    print_json(answer) if as_json else _show_usable(unit, answer)
+    if not answer["usable"]:
+        raise typer.Exit(FAILED)
+
+
+def _show_usable(unit: str, answer: Json) -> None:
+    use = Use(answer["use"])
+    reservations = (f"{translated('But')}: {line}" for line in answer["reservations"])
+    lines = (answer["why"], *answer["reasons"][1:], *reservations)
+    word = escape(translated(in_words(use, answer["action"])))
+    head = f"[bold]{escape(unit)}[/]  [{USE_COLOURS[use]}]{word}[/]"
+    screen().print(head, *(escape(translated(line)) for line in lines), sep="\n  ")
+
+
+def flags(
+    unit: Annotated[str | None, typer.Option(help="Only of this serial number.")] = None,
+    state: Annotated[FlagState | None, typer.Option(help="Only in this state.", show_default="open ones")] = None,
+    assigned: Annotated[
+        str | None, typer.Option(help="Only of this login or name; `me`: of the token's account; `nobody`.")
+    ] = None,
+    server: Server = DEFAULT_SERVER,
+    as_json: AsLines = None,
+) -> None:
+    """Show flags; without a state those that are open."""
+    filters, listing = {"unit": unit, "state": state, "assigned": assigned}, ListOutput.of(as_json)
+    with connect(server, language=listing.language) as client:
+        found = client.every("/flags", "flags", limit=1000, **filters)
+        rows = list(found if state else takewhile(lambda flag: flag["state"] != FlagState.RESOLVED, found))
+    nothing = "There is none." if state else "No flag is open."
+    listing.show(rows, lambda: _flag_table(rows) if rows else Text(translated(nothing)))
+
+
+def _flag_table(flags: list[Json]) -> Table:
+    table = table_of("flag", "unit", "state", "since", "who", "where", "what", right=("flag",))
+    for flag in flags:
+        state = FlagState(flag["state"])
+        table.add_row(
+            str(flag["id"]),
+            escape(flag["unit"]),
+            f"[{FLAG_COLOURS[state]}]{translated(state.value)}[/]",
+            flag["raised_at"][:10],
+            escape(flag["assignee"]),
+            escape(translated(place_in_words(flag["place"], flag["subject"] or flag["unit"]))),
+            escape(translated(f"{flag['summary']} {flag['proposal']}".strip())),
+        )
+    return table

@@ -27,23 +27,20 @@ PARAMETERS = ("bias", "scale", "axis")
 File = Annotated[Path, typer.Argument(metavar="FILE", help="The recording.", show_default=False)]
 Reference = Annotated[Path, typer.Option(help="Session file of the calibration to compare with.", show_default=False)]
 Motion = Annotated[str, typer.Option(help="`still`, `any`, or `auto`: motion is left out where it spoils parity.")]
-FalseAlarm = Annotated[float, typer.Option(min=1e-9, max=0.5, help="Chance that an unchanged block is called changed.")]
 
 
-def parity(
-    file: File, reference: Reference, motion: Motion = "auto", false_alarm: FalseAlarm = 0.01, as_json: AsJson = False
-) -> None:
+def parity(file: File, reference: Reference, motion: Motion = "auto", as_json: AsJson = False) -> None:
     """Judge a recording in service by what the redundant sensors say of one another; no stand needed."""
     if motion not in ("auto", "still", "any"):
         raise typer.BadParameter(f"motion is {motion!r}; choose auto, still or any")
-    result, started_at, away = _result(file, reference, motion, false_alarm)
+    result, started_at, away = _result(file, reference, motion)
     if as_json:
         print_json(result.to_dict())
     else:
         screen().print(parity_view(result, started_at, away))
 
 
-def _result(file: Path, reference: Path, motion: str, false_alarm: float) -> tuple[ParityResult, str | None, str]:
+def _result(file: Path, reference: Path, motion: str) -> tuple[ParityResult, str | None, str]:
     """The result, when the recording began, in UTC, and whether that was far from the calibration's temperatures, in
     words; exit code 2 with one line when either file cannot be used."""
     with usable(reference):
@@ -64,7 +61,7 @@ def _result(file: Path, reference: Path, motion: str, false_alarm: float) -> tup
             accumulator.add(chunk)
         celsius = None if head.temperature is None else float(head.temperature.mean())
         away = far_from_reference(celsius, calibration.residuals)
-        return accumulator.result(motion=motion, false_alarm=false_alarm), head.started_at, away
+        return accumulator.result(motion=motion), head.started_at, away
 
 
 def parity_view(result: ParityResult, started_at: str | None, away: str = "") -> RenderableType:

@@ -1,23 +1,19 @@
-"""`imu-health plan`, `missing` and `ready`: expected results of a session before it is measured, its missing positions
-during it, and whether its unit is warm and still enough."""
+"""`imu-health plan`: expected results of a session before it is measured."""
 
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
-from urllib.parse import urlencode
 
 import numpy as np
 import typer
 from rich.console import Group, RenderableType
-from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
 from estimator.calibration.free.schedule import GENERIC
 from estimator.diagnosis.residuals.orientations import fitted_state
 from estimator.errors import Problem, SessionError
-from estimator.json_object import Json
-from estimator.planning import OrientationRank, Plan, missing, plan, proposed_orientations, rank_of_orientations
+from estimator.planning import OrientationRank, Plan, plan, proposed_orientations, rank_of_orientations
 from estimator.planning.expected import head_kind, input_noise
 from estimator.reading.bounds import WITHIN
 from estimator.results import Calibration
@@ -25,22 +21,16 @@ from estimator.session import ARBITRARY_ORIENTATIONS, Array, CalibrationSession
 from estimator.simulate import orientation_schedule
 from estimator.thermal.plan import expected
 from estimator.thermal.simulate import thermal_schedule
-from service.client import connect
 from service.commands.calibrate import temperature_view
 from service.commands.console import AsJson, print_json, screen, usable
 from service.commands.options import checked
-from service.commands.speech import FAILED, output_language
 from service.ingest import read_file
 from service.kit.measures import number
-from service.planning.question import PlanQuestion, ReadyQuestion
-from service.planning.rules import judged_by_defaults
+from service.planning.question import PlanQuestion
 from service.planning.words import (
     UNSEEN,
     blind,
     headline,
-    missing_in_words,
-    readiness_headline,
-    reasons,
     seen,
     sigma_in_words,
     tolerance_in_words,
@@ -77,10 +67,6 @@ def plan_session(
             show_default=False,
         ),
     ] = None,
-    minutes: Annotated[float, typer.Option(help="Time a position takes.")] = 2.0,
-    noise: Annotated[
-        float | None, typer.Option(help="One sigma of a reading, µg (°/h).", show_default="as SESSION states or shows")
-    ] = None,
     orientations: Annotated[
         int | None, typer.Option(help="Propose this many still orientations instead of a stand.", show_default=False)
     ] = None,
@@ -95,18 +81,18 @@ def plan_session(
     is answered with the bands of bias and scale factor over temperature, the orientations repeated at every soak.
     """
     question = checked(
-        PlanQuestion, kind=kind, sensors=sensors, elevation=alpha, positions=positions, runs=runs, minutes=minutes,
-        noise=noise, **dict(map(amount, tolerance or ())),
+        PlanQuestion, kind=kind, sensors=sensors, elevation=alpha, positions=positions, runs=runs,
+        **dict(map(amount, tolerance or ())),
     )  # fmt: skip
     with usable(file or Path("plan")):
         pattern = question.cone() if file is None else read_file(file)
         if temperatures is not None:
-            sigma = question.sigma(pattern) if file is None or noise is not None else input_noise(pattern)
+            sigma = question.sigma(pattern) if file is None else input_noise(pattern)
             _show(over_temperature(pattern, soaks(temperatures), orientations or GENERIC, sigma), as_json)
         elif orientations is not None or pattern.programme == ARBITRARY_ORIENTATIONS:
             _show(rank_of(pattern, orientations), as_json)
         else:
-            sigma = question.sigma(pattern) if file is None or noise is not None else input_noise(pattern)
+            sigma = question.sigma(pattern) if file is None else input_noise(pattern)
             _show(plan(pattern, question.request(head_kind(pattern)), sigma=sigma), as_json)
 
 
@@ -227,97 +213,3 @@ def orientation_view(found: OrientationRank) -> RenderableType:
         for direction in directions:
             table.add_row(name, *(number(float(x), 3) for x in direction))
     return Group(*lines, Text(""), table)
-
-
-def missing_positions(
-    file: Annotated[Path, typer.Argument(metavar="SESSION", help="The session file as it is so far.")],
-    *,
-    positions: Annotated[
-        int | None,
-        typer.Option("--positions", "-n", min=2, max=360, help="Positions a run.", show_default="by the steps so far"),
-    ] = None,
-    runs: Annotated[str, typer.Option(help="both, or direct where the block is not flipped.")] = "both",
-    as_json: AsJson = False,
-) -> None:
-    """Say which positions a session still lacks while it is measured: settings of the stand, or orientations to add."""
-    if runs not in ("both", "direct"):
-        raise typer.BadParameter(f"--runs is {runs}; give both or direct")
-    with usable(file):
-        result = missing(read_file(file), positions, both_runs=runs == "both")
-    if as_json:
-        print_json(result.to_dict())
-    else:
-        screen().print(*missing_in_words(result), sep="\n", highlight=False)
-
-
-def ready(
-    file: Annotated[Path, typer.Argument(metavar="SESSION", help="The first rows, or the first minutes of a raw log.")],
-    *,
-    duration: Annotated[
-        float | None,
-        typer.Option(help="Minutes that the measurement will take.", show_default="as the type's last session, or 96"),
-    ] = None,
-    bias: Annotated[
-        float | None, typer.Option(help="Tolerance of the bias, µg (°/h).", show_default="50, 0.05")
-    ] = None,
-    scale: Annotated[float | None, typer.Option(help="Tolerance of the scale factor, ppm.", show_default="100")] = None,
-    coefficient: Annotated[
-        float | None,
-        typer.Option(
-            help="Temperature coefficient of the zeros at most, µg/K (°/h/K): then the thermometer is judged too.",
-            show_default=False,
-        ),
-    ] = None,
-    unit_type: Annotated[
-        str | None,
-        typer.Option("--type", help="Unit type by whose tolerances is judged; asks --server.", show_default=False),
-    ] = None,
-    server: Annotated[
-        str | None,
-        typer.Option(help="Service that knows the unit and its type.", envvar="IMU_HEALTH_SERVER", show_default=False),
-    ] = None,
-    as_json: AsJson = False,
-) -> None:
-    """Say whether a unit is warm and still enough to be measured, by the first minutes of a record: exit code 0 for
-    ready, 1 for not yet.
-
-    Leave the block in one position and record: imu-health ready first-minutes.json --duration 96. What is judged is the
-    drift to come while the programme lasts, against a quarter of the tolerances. Nothing is stored.
-    """
-    question = checked(
-        ReadyQuestion, minutes=duration, unit_type=unit_type, bias=bias, scale=scale, coefficient=coefficient
-    )
-    if unit_type is not None and server is None:
-        raise typer.BadParameter("--type is known to a service: give its address with --server")
-    document = _judged_locally(file, question) if server is None else _judged_by_service(file, question, server)
-    _show_readiness(document, as_json)
-    if not document["ready"]:
-        raise typer.Exit(FAILED)
-
-
-def _judged_locally(file: Path, question: ReadyQuestion) -> Json:
-    """On this machine, by default tolerances."""
-    with usable(file):
-        answer = judged_by_defaults(read_file(file, part=True), question)
-    sentences = [readiness_headline(answer.found), *reasons(answer.found, answer.kind)]
-    return {**answer.found.to_dict(), "unit_type": None, "said": sentences}
-
-
-def _judged_by_service(file: Path, question: ReadyQuestion, server: str) -> Json:
-    """By the service, which knows the unit."""
-    query = urlencode(question.model_dump(exclude_none=True))
-    with usable(file):
-        content = file.read_bytes()
-        with connect(server, language=output_language()) as client:
-            return dict(client.answer("POST", f"/plan/ready?{query}", files={"file": (file.name, content)}).json())
-
-
-def _show_readiness(document: Json, as_json: bool) -> None:
-    if as_json:
-        print_json(document)
-        return
-    colour = "green" if document["ready"] else "bold red"
-    first, *others = document["said"]
-    screen().print(
-        f"[bold]{escape(document['unit'])}[/]  [{colour}]{escape(first)}[/]", *map(escape, others), sep="\n  "
-    )

@@ -45,16 +45,13 @@ from service.commands.hiding import (
     warmed,
     write_answer,
 )
-from service.demo.blocks import ELEMENT, MICRO, MICRO_G, ParameterMove, norms_of, schedule_of, step_of
+from service.demo.blocks import ELEMENT, ELEVATION_DEG, MICRO, MICRO_G, ParameterMove, norms_of, schedule_of, step_of
 from service.demo.other_programmes import RATE_NOISE, alignment, orientations, rate_table, recording, turntable_truth
 
 USUAL_NOISE = {ACCELEROMETER: 2.5, GYROSCOPE: 0.3}
 """One sigma of an averaged reading, unless another is asked for: µg; pulses."""
 Block = Annotated[
     str, typer.Option(help=f"What they are, {ACCELEROMETER} or {GYROSCOPE}: on a stand, gyros count pulses.")
-]
-Alpha = Annotated[
-    float, typer.Option(min=1, max=89, help="Elevation of the head's axis, degrees; of gyros χ, to the Earth's axis.")
 ]
 Noise = Annotated[
     float | None,
@@ -157,7 +154,6 @@ def simulate_files(
     unit: Annotated[str, typer.Option(help="Serial number of the unit.")] = "SIM-001",
     sensors: Annotated[int, typer.Option("--sensors", "-m", min=3, max=48, help="Sensors on the cone.")] = 6,
     block: Block = ACCELEROMETER,
-    alpha: Alpha = 40.0,
     positions: Annotated[int, typer.Option("--positions", "-n", min=3, max=360, help="Positions a run.")] = 24,
     sessions: Annotated[int, typer.Option(min=1, max=500, help="Sessions, two months apart.")] = 1,
     seed: Annotated[int, typer.Option(min=0, help="The same seed and serial number give the same files.")] = 1,
@@ -199,7 +195,7 @@ def simulate_files(
     if programme in STILL:
         schedule = STILL[programme](orientations(unit, sensors, positions, rng), rng)
     else:
-        schedule = warmed(replace(schedule_of(block, sensors, "SIM", alpha, positions), unit=unit), warming)
+        schedule = warmed(replace(schedule_of(block, sensors, "SIM", ELEVATION_DEG, positions), unit=unit), warming)
     made = (
         _turned(unit, programme, changes, sessions, rng, levers=levers)
         if programme in ON_TURNTABLE

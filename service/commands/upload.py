@@ -1,5 +1,5 @@
 """`imu-health upload`: session files to a running service; a large one is streamed, and followed until it is stored.
-Long work is followed by a progress bar on standard error, which can be interrupted while the work goes on."""
+A progress bar on standard error follows it, and can be interrupted while the work goes on."""
 
 import sys
 from collections import Counter
@@ -13,16 +13,7 @@ from typing import IO, Annotated, Any
 import typer
 from rich.console import Console
 from rich.markup import escape
-from rich.progress import (
-    BarColumn,
-    DownloadColumn,
-    MofNCompleteColumn,
-    Progress,
-    ProgressColumn,
-    TextColumn,
-    TimeElapsedColumn,
-    TimeRemainingColumn,
-)
+from rich.progress import BarColumn, DownloadColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from estimator.errors import Problem
 from estimator.json_object import Json
@@ -30,7 +21,7 @@ from service.client import Client, connect
 from service.commands.console import DEFAULT_SERVER, AsJson, Files, Server, are_large, for_each, print_json, screen
 from service.commands.speech import output_language, say, translated
 from service.errors import RefusedError
-from service.jobs.records import KILOBYTE, OPEN, JobKind, JobState
+from service.jobs.records import KILOBYTE, OPEN, JobState
 from service.sessions.decision import Verdict
 from service.sessions.words.conditions import Condition, condition_of
 
@@ -54,13 +45,13 @@ class Uploader:
         """The receipt; for a large file without waiting its job. RefusedError for an unusable file."""
         if not are_large((file,)):
             return self.client.send(file.name, file.read_bytes(), self.stated)
-        size, counts = file.stat().st_size, DownloadColumn()
-        with file.open("rb") as content, bar(file.name, quiet=self.quiet, counts=counts) as callback:
+        size = file.stat().st_size
+        with file.open("rb") as content, _bar(file.name, quiet=self.quiet) as callback:
             file_with_progress: Any = _WatchedFile(content, size, f"sending {file.name}", callback)
             answer = self.client.send(file.name, file_with_progress, self.stated, later=True)
         if "verdict" in answer or not self.wait:
             return answer
-        return self._became(followed(self.client, answer["id"], quiet=self.quiet))
+        return self._became(_followed(self.client, answer["id"], quiet=self.quiet))
 
     def _became(self, job: Json) -> Json:
         """The receipt of the session of a file."""
@@ -99,36 +90,34 @@ class _WatchedFile:
         return self.file.seek(place)
 
 
-def followed(client: Client, id: int, *, quiet: bool) -> Json:
-    """The job once it has ended. On an interrupt, a message says that it goes on, and how to find it again."""
+def _followed(client: Client, id: int, *, quiet: bool) -> Json:
+    """The upload's job once it has ended. On an interrupt, a message says that it goes on, and where to look."""
     job: Json = client.get(f"/jobs/{id}").json()
-    is_upload = job["kind"] == JobKind.UPLOAD
-    size = KILOBYTE if is_upload else 1
     try:
-        with bar(f"job {id}", quiet=quiet, counts=DownloadColumn() if is_upload else MofNCompleteColumn()) as callback:
+        with _bar(f"job {id}", quiet=quiet) as callback:
             while job["state"] in OPEN:
-                callback(size * job["done"], size * job["total"] if job["done"] else None, _doing(job))
+                callback(KILOBYTE * job["done"], KILOBYTE * job["total"] if job["done"] else None, _doing(job))
                 sleep(POLL_SECONDS)
                 job = client.get(f"/jobs/{id}").json()
     except KeyboardInterrupt:
-        say(f"Job {id} goes on without you: imu-health jobs show {id} --wait, or imu-health jobs cancel {id}")
+        say(f"Job {id} goes on without you: {client.server}/jobs/{id}")
         raise
     return job
 
 
 def _doing(job: Json) -> str:
-    if job["kind"] != JobKind.UPLOAD:
-        return f"job {job['id']}"
     again = f", time {job['times'] + 1}" if job["times"] else ""
     return f"job {job['id']}: reading {job['subject']}{again}"
 
 
 @contextmanager
-def bar(doing: str, *, quiet: bool, counts: ProgressColumn) -> Iterator[ProgressCallback]:
-    """A progress bar, on a terminal only; yields the function that moves it."""
+def _bar(doing: str, *, quiet: bool) -> Iterator[ProgressCallback]:
+    """A progress bar of bytes, on a terminal only; yields the function that moves it."""
     is_shown = not quiet and sys.stderr.isatty() and sys.stdout.isatty()
-    columns = (TextColumn("{task.description}"), BarColumn(), counts, TimeElapsedColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True, disable=not is_shown) as progress:
+    columns = (BarColumn(), DownloadColumn(), TimeElapsedColumn(), TimeRemainingColumn())
+    with Progress(
+        TextColumn("{task.description}"), *columns, console=Console(stderr=True), transient=True, disable=not is_shown
+    ) as progress:
         task = progress.add_task(doing, total=None)
 
         def move(done: int, total: int | None, now: str) -> None:
@@ -147,10 +136,6 @@ COLOURS = {
 """Of the verdicts, as on the pages."""
 
 
-Supersedes = Annotated[
-    str | None, typer.Option(metavar="ID", help="Stored session that this corrected file supersedes.")
-]
-By = Annotated[str | None, typer.Option(help="Who replaces it; with --supersedes.")]
 Wait = Annotated[
     bool,
     typer.Option(
@@ -160,7 +145,6 @@ Wait = Annotated[
 Mapping = Annotated[
     Path | None, typer.Option(help="JSON file that says how tables of your own layout are read: imu-mapping/1.")
 ]
-Why = Annotated[str | None, typer.Option(help="What was wrong; with --supersedes.")]
 Check = Annotated[bool, typer.Option("--check", help="Check only: judged and stored, does not change the due date.")]
 
 
@@ -169,20 +153,14 @@ def upload_files(
     server: Server = DEFAULT_SERVER,
     as_json: AsJson = False,
     *,
-    supersedes: Supersedes = None,
-    by: By = None,
-    why: Why = None,
     wait: Wait = True,
     mapping: Mapping = None,
     check: Check = False,
 ) -> None:
     """Upload session files and print the verdict of each; a file that is already there is stored once. Exit code 2
     where one of them was not stored."""
-    if supersedes and len(files) > 1:
-        raise typer.BadParameter("one corrected file supersedes one session", param_hint="--supersedes")
-    read_by = None if mapping is None else mapping.read_text(encoding="utf-8")
-    fields = {"supersedes": supersedes, "by": by, "why": why, "mapping": read_by, "check": "true" if check else None}
-    stated = {name: text for name, text in fields.items() if text}
+    stated = {} if mapping is None else {"mapping": mapping.read_text(encoding="utf-8")}
+    stated |= {"check": "true"} if check else {}
     show: Callable[[Json], None] = print_json if as_json else _print_line
     outcomes: Counter[str] = Counter()
     with connect(server, language=output_language()) as client:

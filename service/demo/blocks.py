@@ -24,6 +24,8 @@ GYRO_SCALE = 1 / (0.6 * ARCSEC)
 """Pulses per rad: 0.6″ a pulse."""
 COUNT_TIME = 100.0
 """s."""
+ELEVATION_DEG = 40.0
+"""Of the head, degrees, of the demonstration fleet and of `imu-health simulate`."""
 MICRO_G = 9.80665e-6
 """m/s², at standard gravity."""
 BIAS_REPEATABILITY = {ACCELEROMETER: 2e-5 / 3 * STANDARD_GRAVITY, GYROSCOPE: 0.04 / 3 * np.pi / 180 / 3600}

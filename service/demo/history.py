@@ -25,6 +25,7 @@ from estimator.writing import session_document
 from service.demo.blocks import (
     DEGREE_PER_HOUR,
     ELEMENT,
+    ELEVATION_DEG,
     MICRO,
     SENSORS,
     TYPE_NAME,
@@ -57,8 +58,6 @@ STANDS = ("ODG-1", "ODG-2", "ODG-3")
 OPERATORS = ("A. Lindqvist", "K. Ito", "M. Okafor", "R. Duarte")
 POSITIONS = (12, 24)
 """A run: a short session and a full one."""
-ELEVATION_DEG = 40.0
-"""Of the head, degrees; `imu-health simulate` takes the same."""
 STEEP_DEG = 65.0
 """Of short sessions on the eccentric stand: at one elevation an eccentric scale looks like a wobbling axis."""
 NOISE = {ACCELEROMETER: 3e-6, GYROSCOPE: 0.3}

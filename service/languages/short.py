@@ -24,15 +24,13 @@ WORDS = tuple(
     {first} and {last} | {first} or {last} | {first}; and {last}
     {unit} per {input} | {rate} a year | ppm | arcsec | degrees | missing | but
     a steady change of a parameter; a step is a sudden one
-    state | since | who | where | what | view | page | name | address | revision | model of | accepted | job | asked for
+    state | since | who | where | what | view | page | name | address | revision | accepted | job
     by | condition | last session | sessions | why | measured | parameter | off reference | tolerance | location
-    custodian | owner | retired | days | use | now | with the service | login | role | token | for | until | last used
-    revoked | when | account | to | no date | entered | moved | returned | running | cancelled | recalibration | report
+    custodian | owner | retired | days | use | now | login | role | token | for | until | last used
+    revoked | when | account | to | entered | moved | returned | running | cancelled | recalibration | report
     model | libraries | settings | folder | disk | database | clock | workers | secrets | seal | sign-in | message
-    There is none. | No flag is open. | No view is saved yet. | No verdict, date or flag would change.
+    There is none. | No flag is open.
     No such file or directory | Permission denied | Is a directory | Not a directory
-    withdraws revision {id} by {who}, {day} | accepted by {who}, {day}
-    There is no job. | No cause is accepted. | No unit is known yet. | Nothing is due.
     """.strip().splitlines()
     for word in line.split("|")
 )

@@ -76,6 +76,8 @@ class AuditCheck:
     """Hash of the last line; kept elsewhere, it shows later that none was cut off."""
     broken: int | None
     """First line that does not follow from the ones before it; null: none."""
+    expected: bool | None = None
+    """Whether a hash that was noted before is still there; null: none was given."""
 
 
 class Audit(Queries):
@@ -121,17 +123,17 @@ class Audit(Queries):
         )
         return {at: who for at, who in self._session.execute(query)}  # noqa: C416 - rows are no pairs
 
-    def check(self) -> AuditCheck:
-        """Checks the chain from the first line."""
+    def check(self, expect: str = "") -> AuditCheck:
+        """Checks the chain from the first line, and whether a hash is in it where one is given."""
         last, lines, broken = FIRST, 0, None
         for row in self._session.scalars(select(AuditRow).order_by(AuditRow.id).execution_options(yield_per=1000)):
             lines += 1
             if broken is None and row.hash != _hash(last, row):
                 broken = row.id
             last = row.hash
-        return AuditCheck(lines, last, broken)
+        return AuditCheck(lines, last, broken, self._has(expect) if expect else None)
 
-    def has(self, hash: str) -> bool:
+    def _has(self, hash: str) -> bool:
         """Whether the trail has a line of this hash."""
         return self._session.scalar(select(AuditRow.id).where(AuditRow.hash == hash).limit(1)) is not None
 

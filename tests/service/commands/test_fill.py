@@ -27,7 +27,7 @@ def test_a_fleet_is_the_same_for_the_same_seed_and_has_every_story() -> None:
 @pytest.fixture
 def folder(run: Run, tmp_path: Path) -> Path:
     """A data folder with three units."""
-    ran = run("fill", "--units", 3, "--workers", 2, "--data-folder", tmp_path / "data")
+    ran = run("fill", "--units", 3, "--data-folder", tmp_path / "data")
     assert ran.code == 0
     assert "3 simulated units" in ran.err
     assert "Done in" in ran.err

@@ -86,7 +86,7 @@ def test_a_server_that_does_not_answer_is_said_on_one_line(run: Run, good_file: 
 def test_the_fleet_is_shown_worst_first(run: Run, address: str, two_sessions: list[Path], tmp_path: Path) -> None:
     other = write(tmp_path, "other.json", accelerometer_block(unit="BA-100"))
     run("upload", *two_sessions, other, "--server", address)
-    lines = run("fleet", "--format", "table", "--server", address).out.splitlines()
+    lines = run("fleet", "--table", "--server", address).out.splitlines()
     assert lines[0] == "2 units: 1 Fit, 1 Reference set"
     assert [line.split()[0] for line in lines if line.startswith("BA-")] == ["BA-100", "BA-017"]
 
@@ -96,7 +96,6 @@ def test_a_pipe_gets_one_unit_a_line_and_who_chooses_a_list(run: Run, address: s
     [unit] = run("fleet", "--server", address).documents
     assert (unit["serial"], unit["verdict"]) == ("BA-017", "undecidable")
     assert run("fleet", "--server", address, "--json").documents == [unit]
-    assert run("fleet", "--server", address, "--format", "json").documents == [[unit]]
 
 
 def test_some_of_the_fleet_are_shown(run: Run, address: str, two_sessions: list[Path], tmp_path: Path) -> None:
@@ -104,14 +103,14 @@ def test_some_of_the_fleet_are_shown(run: Run, address: str, two_sessions: list[
     document["stand"]["id"] = "S9"
     run("upload", *two_sessions, write(tmp_path, "other.json", document), "--server", address)
     assert [unit["serial"] for unit in run("fleet", "--stand", "S9", "--server", address).documents] == ["BA-100"]
-    shown = run("fleet", "--stand", "S9", "--format", "table", "--server", address).out
+    shown = run("fleet", "--stand", "S9", "--table", "--server", address).out
     assert shown.startswith("1 of 2 units")
 
 
 def test_noise_at_rest_is_shown_with_its_interval_and_no_verdict(run: Run, address: str, tmp_path: Path) -> None:
     ran = run("upload", write(tmp_path, "log.json", raw_log(still=300)), "--server", address, "--json")
     httpx.get(f"{address}/api/v1/sessions/{ran.documents[0]['id']}/diagnosis")
-    shown = run("history", "LOG-1", "--parameter", "white-noise", "--format", "table", "--server", address).out
+    shown = run("history", "LOG-1", "--parameter", "white-noise", "--table", "--server", address).out
     lines = [line for line in shown.splitlines() if "white-noise" in line]
     assert lines
     assert all(" to " in line and "Undecided" not in line and "Reference" not in line for line in lines)
@@ -121,7 +120,7 @@ def test_a_history_is_shown_beside_its_reference(run: Run, address: str, two_ses
     run("upload", *two_sessions, "--server", address)
     asked = ("history", "BA-017", "--sensor", "A3", "--parameter", "bias", "--server", address)
     assert [point["is_reference"] for point in run(*asked).documents] == [True, False]
-    heading, first, later = run(*asked, "--format", "table").out.splitlines()
+    heading, first, later = run(*asked, "--table").out.splitlines()
     assert heading.split()[:3] == ["measured", "sensor", "parameter"]
     assert (first.split()[:3], later.split()[:3]) == (["2026-03-01", "A3", "bias"], ["2026-05-01", "A3", "bias"])
     assert "±" in later
@@ -136,15 +135,6 @@ def test_the_report_is_a_table_for_other_programs(run: Run, address: str, good_f
     assert report["units"][0]["serial"] == "BA-017"
 
 
-def test_a_certificate_is_written_as_pdf(run: Run, address: str, good_file: Path, tmp_path: Path) -> None:
-    [receipt] = run("upload", good_file, "--server", address, "--json").documents
-    target = tmp_path / "certificate.pdf"
-    assert run("certificate", receipt["id"], "--server", address, "--out", target).code == 0
-    assert target.read_bytes().startswith(b"%PDF")
-    ran = run("certificate", "../none", "--server", address)
-    assert (ran.code, ran.out, ran.err.count("\n")) == (1, "", 1)
-
-
 @pytest.mark.parametrize(("format", "head"), [("xlsx", b"PK"), ("pdf", b"%PDF")])
 def test_the_report_is_written_as_workbook_and_on_paper(
     run: Run, address: str, good_file: Path, tmp_path: Path, format: str, head: bytes
@@ -155,11 +145,13 @@ def test_the_report_is_written_as_workbook_and_on_paper(
     assert target.read_bytes().startswith(head)
 
 
-def test_a_correction_is_written_as_json(run: Run, address: str, good_file: Path, tmp_path: Path) -> None:
+def test_parameters_of_a_flight_controller_are_written(run: Run, address: str, good_file: Path, tmp_path: Path) -> None:
     [receipt] = run("upload", good_file, "--server", address, "--json").documents
-    target = tmp_path / "correction.json"
-    assert run("correction", receipt["id"], "--server", address, "--out", target).code == 0
-    assert json.loads(target.read_text("utf-8"))["session"] == receipt["id"]
+    target = tmp_path / "unit.params"
+    assert run("export", receipt["id"], "--system", "px4", "--force", "--server", address, "--out", target).code == 0
+    assert "CAL_ACC0_XOFF" in target.read_text("utf-8")
+    ran = run("export", "../none", "--system", "px4", "--server", address)
+    assert (ran.code, ran.out, ran.err.count("\n")) == (1, "", 1)
 
 
 def test_a_template_filled_in_is_taken(run: Run, address: str, tmp_path: Path) -> None:

@@ -49,10 +49,10 @@ def test_a_long_series_ends_where_a_short_one_does(run: Run, tmp_path: Path) -> 
 
 
 def test_the_options_shape_the_session(run: Run, tmp_path: Path) -> None:
-    run("simulate", "--out", tmp_path, "-m", 4, "--alpha", 35, "-n", 10, "--noise", 5, "--unit", "X/1")
+    run("simulate", "--out", tmp_path, "-m", 4, "-n", 10, "--noise", 5, "--unit", "X/1")
     document = json.loads((tmp_path / "X_1-001.json").read_text())
     assert document["unit"] == "X/1"
-    assert document["stand"]["alpha_deg"] == 35
+    assert document["stand"]["alpha_deg"] == 40
     assert len(document["sensors"]) == 4
     assert document["table"]["beta_deg"][:3] == [0.0, 36.0, 72.0]
     assert document["table"]["A1_se"][0] == pytest.approx(5 * 9.80665e-6 * 0.12)

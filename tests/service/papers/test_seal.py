@@ -27,7 +27,7 @@ from pyhanko_certvalidator import ValidationContext
 from service.app import create_app
 from service.errors import ConflictError, ServiceError
 from service.kit.person import Role
-from service.papers.sealing import Seal, seal_of, seal_room
+from service.papers.sealing import Seal, seal_of
 from service.settings import Settings
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.papers.documents import text_of
@@ -35,6 +35,7 @@ from tests.service.papers.laboratory import named
 from tests.service.papers.schema import DCC
 from tests.service.papers.test_dcc_schema import broken, needs_schemas, schema
 from tests.service.papers.test_signatures import approve, paper, settings, signed, staff, storage  # noqa: F401 - fixtures
+from tests.service.papers.trial_key import trial_key
 from tests.service.people.staff import Staff
 
 DS = "{http://www.w3.org/2000/09/xmldsig#}"
@@ -45,7 +46,7 @@ C14N11 = "http://www.w3.org/2006/12/xml-c14n11"
 @pytest.fixture
 def key_file(tmp_path: Path) -> Path:
     """Key and certificate for trial."""
-    (tmp_path / "seal.pem").write_bytes(seal_room("trial").make_trial_key("Laboratory North", datetime.now(UTC)))
+    (tmp_path / "seal.pem").write_bytes(trial_key("Laboratory North", datetime.now(UTC)))
     return tmp_path / "seal.pem"
 
 
@@ -107,7 +108,7 @@ def sealed(key_file: Path) -> Seal:
 
 def _other(folder: Path) -> Path:
     """Somebody else's key."""
-    (folder / "other.pem").write_bytes(seal_room("trial").make_trial_key("Somebody", datetime.now(UTC)))
+    (folder / "other.pem").write_bytes(trial_key("Somebody", datetime.now(UTC)))
     return folder / "other.pem"
 
 
@@ -187,7 +188,7 @@ def test_the_same_bytes_are_handed_out_again(settings: Settings, staff: Staff, k
 
 
 def test_an_expired_seal_signs_nothing(settings: Settings, staff: Staff, tmp_path: Path) -> None:  # noqa: F811
-    (tmp_path / "old.pem").write_bytes(seal_room("trial").make_trial_key("", datetime(2020, 1, 1, tzinfo=UTC)))
+    (tmp_path / "old.pem").write_bytes(trial_key("", datetime(2020, 1, 1, tzinfo=UTC)))
     with named(settings, seal_key_file=tmp_path / "old.pem") as http:
         paper(http, staff)
         assert signed(http, staff, Role.ENGINEER, "reviewed").status_code == 201

@@ -14,7 +14,7 @@ from lxml import etree
 from service.papers import sealing
 from service.papers.dcc.digest import parsed
 from service.papers.dcc.elements import NAMESPACES
-from service.papers.sealing import Seal, seal_of, seal_room
+from service.papers.sealing import Seal, seal_of
 from service.papers.verifying import again
 from service.papers.verifying.records import Outcome, RawFile, Verification
 from service.papers.verifying.verify import Beside, verify
@@ -30,6 +30,7 @@ from tests.service.faulty_recordings import faulty_bytes
 from tests.service.made_sessions import FAILED, session_bytes, session_id
 from tests.service.papers.laboratory import named, state_all
 from tests.service.papers.mutations import anew, mutated
+from tests.service.papers.trial_key import trial_key
 from tests.service.recordings import recording_bytes
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
@@ -59,7 +60,7 @@ def outcomes(found: Verification) -> dict[str, Outcome]:
 def key_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Key and certificate for trial."""
     file = tmp_path_factory.mktemp("seal") / "seal.pem"
-    file.write_bytes(seal_room("trial").make_trial_key("Laboratory North", datetime.now(UTC)))
+    file.write_bytes(trial_key("Laboratory North", datetime.now(UTC)))
     return file
 
 
@@ -172,7 +173,7 @@ def counted(step: Callable[..., Any], called: list[str]) -> Callable[..., Any]:
 
 
 def test_a_seal_of_somebody_else_is_refused(printed: bytes, seal: Seal, tmp_path: Path) -> None:
-    (tmp_path / "other.pem").write_bytes(seal_room("trial").make_trial_key("Somebody", datetime.now(UTC)))
+    (tmp_path / "other.pem").write_bytes(trial_key("Somebody", datetime.now(UTC)))
     other = (tmp_path / "other.pem").read_bytes()
     own = b"-----BEGIN CERTIFICATE" + other.split(b"-----BEGIN CERTIFICATE")[1]
     assert outcomes(verify(seal.xml(printed), RAW, Beside(trusted=own), NOW))["seal"] is Outcome.DIFFERS

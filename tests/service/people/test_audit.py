@@ -38,6 +38,14 @@ def _unguard(connection: Connection) -> None:
             connection.execute(text(f"DROP TRIGGER audit_no_{action}"))
 
 
+def test_a_hash_that_was_noted_is_still_there(storage: Storage) -> None:
+    write(storage, "a", "b")
+    with storage.database.reading() as store:
+        audit = Audit(store)
+        noted = audit.page(2)[1].hash
+        assert [audit.check(hash).expected for hash in (noted, "0" * 64, "")] == [True, False, None]
+
+
 def test_a_whole_trail_is_whole(storage: Storage) -> None:
     write(storage, "a", "b", "c")
     with storage.database.reading() as store:

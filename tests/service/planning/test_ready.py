@@ -1,13 +1,11 @@
-"""Whether a unit is ready to be measured, by the API, the page and the command; nothing is stored."""
+"""Whether a unit is ready to be measured, by the API and the page; nothing is stored."""
 
 import json
-from pathlib import Path
 
 import httpx
 import numpy as np
 
 from tests.builders import Document, accelerometer_block
-from tests.service.commands.conftest import Run, run, write  # noqa: F401 - a fixture
 
 ADDRESS = "/api/v1/plan/ready"
 
@@ -51,14 +49,6 @@ def test_the_form_says_what_it_cannot_use(client: httpx.Client) -> None:
     sent = {"file": ("first.json", json.dumps(at_rest(count=20)))}
     assert client.post("/ready", files=sent, data={"minutes": "soon"}).status_code == 422
     assert client.post("/ready", data={"minutes": "5"}).status_code == 422
-
-
-def test_the_command_says_it_by_its_exit_code(run: Run, tmp_path: Path) -> None:  # noqa: F811
-    warm, cold = (write(tmp_path, f"{drift}.json", at_rest(drift)) for drift in (0.0, 1e-5))
-    assert run("ready", warm, "--duration", 96).code == 0
-    answer = run("ready", cold, "--duration", 96, "--json")
-    assert (answer.code, answer.documents[0]["state"]) == (1, "not-warm")
-    assert run("ready", write(tmp_path, "none.json", {})).code == 2
 
 
 def test_what_is_missing_has_a_page(client: httpx.Client) -> None:

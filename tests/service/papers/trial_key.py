@@ -15,7 +15,7 @@ MAX_NAME_LENGTH = 64
 """Characters of a common name (RFC 5280, upper bound of X.520)."""
 
 
-def make_trial_key(laboratory: str, now: datetime) -> bytes:
+def trial_key(laboratory: str, now: datetime) -> bytes:
     """Key and certificate as one PEM file, for ninety days."""
     key = ec.generate_private_key(ec.SECP256R1())
     common_name = NAME.format(laboratory=laboratory or "no laboratory named")[:MAX_NAME_LENGTH]
