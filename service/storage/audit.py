@@ -131,9 +131,9 @@ class Audit(Queries):
             if broken is None and row.hash != _hash(last, row):
                 broken = row.id
             last = row.hash
-        return AuditCheck(lines, last, broken, self._has(expect) if expect else None)
+        return AuditCheck(lines, last, broken, self.has(expect) if expect else None)
 
-    def _has(self, hash: str) -> bool:
+    def has(self, hash: str) -> bool:
         """Whether the trail has a line of this hash."""
         return self._session.scalar(select(AuditRow.id).where(AuditRow.hash == hash).limit(1)) is not None
 
