@@ -15,6 +15,10 @@ from estimator.session import ACCELEROMETER, GYROSCOPE, Array, Sensor
 JUDGED_BY_PARITY = frozenset({"frozen", "repeated"})
 """Kinds that are not looked for in service: a channel that stands still there is a failing sensor, not a bad record."""
 
+LIVELY = 30.0
+"""Steps that a channel moves by where others of its kind cannot stand still: beyond the noise of a coarse one at rest.
+"""
+
 BRIEF = 3
 """Rows in a row that a marker of no data may fill in service: a channel at the end of its range for longer fails."""
 
@@ -47,6 +51,7 @@ class Screen:
         kinds = sorted(range(len(sensors)), key=lambda i: sensors[i].kind)
         self._kinds = {kind: np.array(list(group)) for kind, group in groupby(kinds, lambda i: sensors[i].kind)}
         self._constant: dict[int, float | None] = {}
+        self._lively: set[int] = set()
 
     def looks_for(self, kind: str) -> bool:
         """Whether a kind was not declined."""
@@ -140,6 +145,8 @@ class Screen:
         low, high = float(x.min()), float(x.max())
         only = low if low == high else None
         self._constant[i] = only if self._constant.get(i, only) == only else None
+        if i not in self._lively and high - low > LIVELY * samples.smallest_step(x):
+            self._lively.add(i)
         if self.looks_for("saturated"):
             for value in (low, high):
                 self.found += seen("saturated", name, rows[samples.at_end(x, value)], at, value)
@@ -152,9 +159,8 @@ class Screen:
         """Records channels that hold nothing in the whole file."""
         if not self.looks_for("frozen"):
             return
-        felt = list(self._kinds.get(ACCELEROMETER, ()))
-        dead = [i for i in felt if self._constant.get(i) is not None]
-        for i in dead if len(dead) < len(felt) else []:
+        live = {kind for kind, channels in self._kinds.items() if self._lively.intersection(channels)}
+        for i in (i for i, only in self._constant.items() if only is not None and self.sensors[i].kind in live):
             text = (
                 "reads {value} in every row while others of its kind change: it carries no data; check its connection, "
                 "or remove the sensor"

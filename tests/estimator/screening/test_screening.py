@@ -160,6 +160,26 @@ def test_times_say_the_rate_that_nobody_states():
         read_session(session(COUNTS, rate=None))
 
 
-def test_an_accelerometer_that_never_changes_is_refused():
+@pytest.mark.parametrize("channel", [1, 4], ids=["accelerometer", "gyro"])
+def test_a_channel_that_never_changes_is_refused(channel):
     with pytest.raises(FormatError, match="reads 77 in every row"):
-        read_session(session(marked(77, np.s_[:], 1), PLACE))
+        read_session(session(marked(77, np.s_[:], channel), PLACE))
+
+
+def test_a_coarse_gyro_may_read_one_value_all_through():
+    counts = COUNTS.copy()
+    counts[:, 3:] = np.round(counts[:, 3:] / 1000)
+    still = np.where((PLACE >= 0)[:, None], counts, counts * np.r_[1, 1, 1, 0, 0, 0])
+    assert kinds_of(session(still, PLACE)) == []
+
+
+def test_a_channel_that_fails_in_service_is_left_to_parity():
+    counts = np.hstack([COUNTS[:, :3], COUNTS[:, :3] + 3])
+    counts[2000:, 4] = 32767
+    counts[500, 1] = -32768
+    document = session(COUNTS) | {"programme": "in-service"}
+    document["sensors"] = [one | {"kind": "accelerometer"} for one in document["sensors"]]
+    document["table"] = dict(zip(NAMES, counts.T.tolist(), strict=True))
+    found = read_session(document)
+    assert [(f.kind, f.sensors, f.rows) for f in found.screening] == [("no-data", (NAMES[1],), 1)]
+    assert np.isfinite(found.readings[2000:]).all()
