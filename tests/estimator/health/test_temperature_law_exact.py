@@ -39,7 +39,7 @@ def lived(bias: Array, *, u: float = 0.04, celsius: Array = WARM, scale: Array |
 
 
 def step_of(sessions: list[Seen], between: tuple[float, float] = BETWEEN, **more: object) -> TemperatureStep | None:
-    steps = temperature_steps(sessions, sessions[0].calibration, between, {(ACCELEROMETER, "bias"): BIAS}, **more)  # type: ignore[arg-type]
+    steps = temperature_steps(sessions, sessions[0].calibration, between, {(ACCELEROMETER, "bias"): BIAS}, **more)
     return steps.get(("A1", "bias"))
 
 
