@@ -92,6 +92,18 @@ def test_the_uncertainty_of_a_worth_is_what_it_scatters_by(scatter: float) -> No
     assert (None in dofs) is (scatter == 0.0)
 
 
+def test_a_session_and_its_reference_each_lie_off_the_law_by_what_scatters() -> None:
+    """Of a law that many sessions tell well, √2·τ is left, and of it alone."""
+    found = []
+    for seed in range(4):
+        rng = np.random.default_rng(seed)
+        celsius = np.r_[20.0, rng.uniform(10, 36, 40)]
+        step = step_of(lived(0.2 * (celsius - 20.0) + 0.3 * rng.standard_normal(41), celsius=celsius))
+        assert step is not None
+        found.append(step.sigma / BIAS)
+    assert np.mean(found) == pytest.approx(0.3 * np.sqrt(2), rel=0.12)
+
+
 def test_weighted_least_squares_is_the_weighted_mean() -> None:
     y, variance = np.array([1.0, 2.0, 6.0]), np.array([1.0, 4.0, 0.25])
     size, covariance, chi2 = _fitted(np.ones((3, 1)), y, variance)

@@ -215,3 +215,13 @@ def test_a_wave_that_no_polynomial_follows_is_a_misfit_of_its_size(parameter: st
     assert one.amplitude == pytest.approx((3e-3 if parameter == "bias" else 3e-4 * 0.12) / np.sqrt(2), rel=0.35)
     curve = getattr(result.thermal.sensor("A2"), parameter)
     assert curve.scatter == pytest.approx(one.amplitude)
+
+
+def test_where_directions_are_known_each_sensor_has_its_own_share_of_what_a_form_explains() -> None:
+    """Shares that are turned back from the chances of one degree of freedom add up to the whole."""
+    one, course = solved(Still(soaks=(20.0, -40.0, 20.0, 70.0, 20.0), each=5, known=1e-6, loop=2e-3))
+    one = replace(one, chi2=1.5 * one.dof)
+    [form] = tried_forms(one, course, 1, {HYSTERESIS}, stated=False)
+    shares = stats.f.isf(form.sensor_p_values / 6, 1, one.dof - 6)
+    assert (form.sensor_p_values < 1).sum() >= 3
+    assert shares[form.sensor_p_values < 1].sum() == pytest.approx(form.gain, rel=0.1)
