@@ -8,7 +8,7 @@ anew.
 import argparse
 import os
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
@@ -86,17 +86,19 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.study.seen", description=__doc__)
     parser.add_argument("parts", nargs="*", metavar="PART", help="only these: " + ", ".join(PARTS))
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--n", type=int, help="sessions of every part; as many as its table is asked for unless given")
     parser.add_argument("--out", type=Path, default=PAGE)
     options = parser.parse_args()
     if unknown := set(options.parts) - set(PARTS):
         parser.error(f"no such part: {', '.join(sorted(unknown))}; choose from {', '.join(PARTS)}")
+    few = "" if options.n is None else f" --n {options.n}"
     before = parts_of(published(options.out)) if whole_of(options.out).exists() else {}
     kept = {PARTS[name].heading: before.get(f"## {PARTS[name].heading}", "") for name in PARTS}
     publish(page(kept), options.out)
     for name in options.parts or [name for name in PARTS if find_spec(f"benchmarks.study.seen.{name}")]:
-        part = PARTS[name]
+        part = PARTS[name] if options.n is None else replace(PARTS[name], n=options.n)
         text = made(name, part, options.seed, why_of(kept[part.heading]))
-        kept[part.heading] = with_command(text, f"python -m benchmarks.study.seen --seed {options.seed} {name}")
+        kept[part.heading] = with_command(text, f"python -m benchmarks.study.seen --seed {options.seed}{few} {name}")
         publish(page(kept), options.out)
 
 
