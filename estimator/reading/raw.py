@@ -12,11 +12,13 @@ from estimator.reading.fields import Fields
 from estimator.reading.keys import DIRECTIONS
 from estimator.reading.problems import shown
 from estimator.screening import KINDS, OFF, Screen, Screening, declined_by
-from estimator.screening.clock import MOST_POSITIONS, no_rate, rate_of
-from estimator.session import ARBITRARY_ORIENTATIONS, IN_SERVICE, RATE_TABLE, ROTATION_ALIGNMENT, Array, Sensor
+from estimator.screening.clock import MOST_POSITIONS, SHORTEST_REST, no_rate, rate_of, usual_step
+from estimator.session import CALIBRATIONS, IN_SERVICE, RATE_TABLE, ROTATION_ALIGNMENT, Array, Sensor
 
 LABELS = ("run", "beta_deg", "position", *DIRECTIONS)
 """Columns that say where the block stood."""
+HELD = 20
+"""Rows under one label from which they are samples: nobody sets a stand to one angle twenty times in a row."""
 EVERY_ROW = (ROTATION_ALIGNMENT, RATE_TABLE)
 """Programmes in which a row is the mean since the one before, so that none can be left out."""
 
@@ -54,7 +56,7 @@ def read_raw(
     if screen is None:
         screen = Screen(sensors, frozenset(KINDS if part else declined), rate, in_service=programme == IN_SERVICE)
     fault = columns.problems.add
-    if is_alone and not part and rate is None and programme == ARBITRARY_ORIENTATIONS:
+    if is_alone and not part and rate is None and programme in CALIBRATIONS:
         screen.rate = rate = _found_rate(columns, time, sensors, screen)
     if time is not None and np.isfinite(time).all() and not (part and is_alone):
         time = screen.times(time, _moved(columns), fault)
@@ -91,11 +93,15 @@ def _declined(document: Fields) -> tuple[str, ...]:
 def _found_rate(columns: Columns, time: Array | None, sensors: tuple[Sensor, ...], screen: Screen) -> float | None:
     """Of rows that are no positions; None of positions."""
     means = [f"{sensor.name}_se" for sensor in sensors] + ["tilt_se_deg"]
-    if not screen.looks_for("rate") or any(columns.has(name) for name in (*LABELS, *means)):
+    if not screen.looks_for("rate") or any(columns.has(name) for name in means):
+        return None
+    is_labelled = any(columns.has(name) for name in LABELS)
+    held = columns.rows / (1 + int(_moved(columns).sum()))
+    if is_labelled and (held < HELD or (time is not None and usual_step(time) >= SHORTEST_REST)):
         return None
     rate = None if time is None else rate_of(time)
-    if rate is None and columns.rows > MOST_POSITIONS:
-        columns.problems.add("sample_rate_hz", no_rate(columns.rows, time))
+    if rate is None and (is_labelled or columns.rows > MOST_POSITIONS):
+        columns.problems.add("sample_rate_hz", no_rate(columns.rows, time, held if is_labelled else None))
     if rate is not None:
         screen.note_rate(rate, columns.rows)
     return rate

@@ -165,9 +165,8 @@ def rate_of(time: Array) -> float | None:
     return float(f"{1 / steps[even].mean():.6g}")
 
 
-def no_rate(rows: int, time: Array | None) -> str:
+def no_rate(rows: int, time: Array | None, held: float | None) -> str:
     """What to tell whoever gives that many rows, which are no positions, without their rate."""
-    text = "has {rows} rows, more than any stand has positions; {advice}"
     if time is None:
         advice = say("for a raw log give sample_rate_hz")
     elif np.ptp(time) == 0:
@@ -176,4 +175,7 @@ def no_rate(rows: int, time: Array | None) -> str:
         advice = say(
             "for a raw log give sample_rate_hz; time_s advances by {step} a row", step=f"{usual_step(time):.4g}"
         )
-    return say(text, rows=f"{rows:,}", advice=advice)
+    if held is None:
+        return say("has {rows} rows, more than any stand has positions; {advice}", rows=f"{rows:,}", advice=advice)
+    text = 'has some {held} rows at each position, as samples are; {advice}, or decline it: "screening": ["rate"]'
+    return say(text, held=f"{held:.0f}", advice=advice)

@@ -160,6 +160,15 @@ def test_times_say_the_rate_that_nobody_states():
         read_session(session(COUNTS, rate=None))
 
 
+def test_many_rows_under_each_label_are_samples():
+    found = read_session(session(COUNTS, PLACE, time=CLOCK, rate=None))
+    assert (found.sample_rate, [f.kind for f in found.screening]) == (100.0, ["rate"])
+    with pytest.raises(FormatError, match="rows at each position, as samples are"):
+        read_session(session(COUNTS, PLACE, rate=None))
+    minutes = 60.0 * np.arange(len(CLOCK))
+    assert read_session(session(COUNTS, PLACE, time=minutes, rate=None)).sample_rate is None
+
+
 @pytest.mark.parametrize("channel", [1, 4], ids=["accelerometer", "gyro"])
 def test_a_channel_that_never_changes_is_refused(channel):
     with pytest.raises(FormatError, match="reads 77 in every row"):
