@@ -65,7 +65,12 @@ def standing(ledger: Ledger) -> list[Standing]:
     same = blocks.lowest == blocks.highest
     moved = ledger.reference.others(blocks.mean)
     for i in range(same.shape[1]):
-        runs = [run for run in runs_of(same[:, i]) if chance(ledger, blocks, same, moved, i, *run) < LEAST_CHANCE]
+        runs = [
+            run
+            for run in runs_of(same[:, i])
+            if not cut_off(ledger, blocks, moved, i, *run)
+            and chance(ledger, blocks, same, moved, i, *run) < LEAST_CHANCE
+        ]
         if runs:
             found.append(_answer(ledger, blocks, moved, i, runs, same))
     return found
@@ -75,6 +80,22 @@ def runs_of(marks: Array) -> Iterator[tuple[int, int]]:
     """First and one after the last of every run of true marks (B,)."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], marks.astype(np.int8), [0]])))
     yield from zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
+
+
+def cut_off(ledger: Ledger, blocks: Blocks, moved: Array, i: int, first: int, until: int) -> bool:
+    """Whether sensor i stands at its outermost reading where the others say that it is driven beyond: then it is sound,
+    and its range too small."""
+    top, bottom, reading = blocks.highest[:, i].max(), blocks.lowest[:, i].min(), blocks.lowest[first, i]
+    outward = float(reading == top) - float(reading == bottom)
+    outward *= float(np.sign(ledger.reference.scale[i]))
+    beyond = outward * (moved[first:until, i] - blocks.mean[first, i])
+    return bool(outward and (beyond > -error_of(ledger, blocks, i)).all() and np.median(beyond) > 0)
+
+
+def error_of(ledger: Ledger, blocks: Blocks, i: int) -> float:
+    """What the others say of sensor i in a block is wrong by no more, m/s² (rad/s): `ERRORS` standard errors."""
+    flutter = np.median(blocks.flutter[:, i] / blocks.samples)
+    return float(ERRORS * np.sqrt(flutter) / max(ledger.reference.visible[i], LEAST_VISIBLE))
 
 
 def chance(ledger: Ledger, blocks: Blocks, same: Array, moved: Array, i: int, first: int, until: int) -> float:
@@ -91,9 +112,8 @@ def chance(ledger: Ledger, blocks: Blocks, same: Array, moved: Array, i: int, fi
         stays = float(np.median(np.delete(blocks.standing.mean(axis=0), i)))
         if stays < SELDOM:
             return float(max(stays, 1e-3) ** blocks.samples.sum())
-    error = np.sqrt(np.median(blocks.flutter[:, i] / blocks.samples)) / max(reference.visible[i], LEAST_VISIBLE)
     seen = float(np.ptp(moved[run, i]))
-    return 0.0 if seen > MOVED * step / abs(reference.scale[i]) + ERRORS * error else 1.0
+    return 0.0 if seen > MOVED * step / abs(reference.scale[i]) + error_of(ledger, blocks, i) else 1.0
 
 
 def _answer(ledger: Ledger, blocks: Blocks, moved: Array, i: int, runs: list[tuple[int, int]], same: Array) -> Standing:
