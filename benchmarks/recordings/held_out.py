@@ -28,6 +28,7 @@ def rows(session: CalibrationSession, chosen: Array) -> CalibrationSession:
         temperature=of(session.temperature),
         directions=of(session.directions),
         tilt_error=of(session.tilt_error),
+        at_ends=of(session.at_ends),
         position=None,
     )
 

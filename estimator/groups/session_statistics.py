@@ -97,6 +97,9 @@ def put_right(session: CalibrationSession) -> tuple[Baseline, tuple[str, ...]]:
     clips, whole = unclipped(rows, CATALOGUE)
     errors, right = undo_record_errors(baseline_of(whole), (), CATALOGUE)
     words: list[str] = [say("{name} clipped", name=session.sensors[c.sensor].name) for c in clips]
+    words += [
+        say("{name} left out, rows {row} to {last}", name=a.sensor, row=a.row, last=a.last_row) for a in rows.set_aside
+    ]
     words += [e.undone.cause.identifier for e in errors]
     return with_fitted_flip(right), tuple(words)
 

@@ -122,5 +122,7 @@ def _moved(columns: Columns) -> Array:
     moved = np.zeros(columns.rows, dtype=bool)
     for cells in (columns.values[name] for name in LABELS if columns.has(name)):
         is_array = isinstance(cells, np.ndarray)
-        moved[1:] |= cells[1:] != cells[:-1] if is_array else [a != b for a, b in pairwise(cells)]
+        changes = cells[1:] != cells[:-1] if is_array else [a != b for a, b in pairwise(cells)]
+        if len(cells) == len(moved):
+            moved[1:] |= np.asarray(changes, dtype=bool)
     return moved

@@ -3,6 +3,8 @@
 from estimator.json_object import Json
 from estimator.reading.bounds import WITHIN
 from estimator.reading.keys import SIGMA
+from estimator.screening import KINDS as SCREENED
+from estimator.screening import OFF
 
 KINDS = ["accelerometer", "gyroscope"]
 NULL = {"type": "null"}
@@ -154,6 +156,10 @@ SESSION_FILE: Json = {
             "counter": {"enum": ["free-running", "reset"], "description": "How pulses are counted."},
             "sample_rate_hz": _number("The rows are samples at this rate, Hz.", "sample_rate_hz"),
             "direction_sigma_deg": _number("One sigma of the stated directions, degrees.", "direction_sigma_deg"),
+            "screening": {
+                "anyOf": [{"const": OFF}, {"type": "array", "items": {"enum": list(SCREENED)}}],
+                "description": "What the rows of a raw log are not to be screened for.",
+            },
         }
     ),
 }  # fmt: skip

@@ -55,7 +55,7 @@ def test_a_reading_that_does_not_belong_is_left_out() -> None:
     readings = SESSION.readings.copy()
     readings[7, 1] += 30 * np.hypot(SESSION.standard_errors[7, 1], SESSION.readings[:, 1].std() * 1e-5)
     spoilt = statistics_of(replace(SESSION, readings=readings))
-    assert spoilt.put_right == (f"reading {7 * 6 + 1 + 1} left out",)
+    assert spoilt.put_right == (f"{SESSION.sensors[1].name} left out, rows 8 to 8",)
     assert spoilt.energy.sum() / spoilt.freedom.sum() < 1.5
 
 
