@@ -34,7 +34,7 @@ class Part:
     heading: str
     about: str
     n: int
-    """As many as its table is asked for."""
+    """Sessions of its table."""
 
 
 PARTS = {
@@ -60,7 +60,7 @@ PARTS = {
         300,
     ),
 }
-"""By their modules, in the order of the page."""
+"""The parts by their modules, in the order of the page."""
 
 
 def made(name: str, part: Part, seed: int, why: str) -> str:
@@ -71,13 +71,13 @@ def made(name: str, part: Part, seed: int, why: str) -> str:
 
 
 def why_of(part: str) -> str:
-    """What was written below a table, with its marks."""
+    """The text written below a table, with its marks."""
     found = WHY.search(part)
     return found[0] if found else f"{BEGIN}\n{END}"
 
 
 def page(kept: dict[str, str]) -> str:
-    """Of the parts that there are, by heading."""
+    """The page made of the parts that there are, by heading."""
     return "\n\n".join(["# What anybody would see", INTRODUCTION, *filter(None, kept.values())]) + "\n"
 
 

@@ -1,4 +1,4 @@
-"""What gravity and sensors can do: later sessions whose scale factors all changed by one factor, judged by the service.
+"""Bounds of gravity and sensors: later sessions whose scale factors all changed by one factor, judged by the service.
 
 ``python -m benchmarks.study.seen.bounds 200 1``: units by a generator of their own, on a stand or in orientations.
 Beyond the bound the factor is the unit's supply, reference or range: its session must not be fit, and the sound session

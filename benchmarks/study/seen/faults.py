@@ -12,7 +12,7 @@ FIRST, LAST = 3.0, 4.0
 THROUGHOUT = 0.15
 """Share of the dead and exchanged that are so from the first sample."""
 MOST_RAMP = 0.3
-"""Of the range, at the end of a recording."""
+"""Largest ramp, as a share of the range, at the end of a recording."""
 LONGEST_DELAY = 0.4
 """s"""
 

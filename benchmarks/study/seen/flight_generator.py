@@ -19,7 +19,7 @@ G = 9.81
 APART = np.radians(15.0)
 """Between any two sensors as they lie in parity: nearer ones are hardly told apart by anything."""
 MEDIAN = 0.455
-"""Of the square of a standard normal number."""
+"""Median of the square of a standard normal number."""
 LEAST_SEEN = 0.15
 """Share of a sensor that shows in parity."""
 

@@ -43,7 +43,7 @@ class Sound:
 
 
 def judged(flight: Flight, known: Calibration, faults: tuple[Fault, ...], rng: np.random.Generator) -> ParityResult:
-    """What parity says of a flight with faults."""
+    """Parity's result for a flight with faults."""
     return parity_check(read_session(recorded(flight, flight.readings(faults, rng))), known)
 
 

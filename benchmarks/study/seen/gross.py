@@ -62,7 +62,7 @@ class Outcome:
 
 
 def outcome(case: Case, looks: bool) -> Outcome:
-    """What the program says of a case."""
+    """The program's answer to a case."""
     names = case.truth.names
     wanted = {(j + 1, names[i]) for j, i in case.gross}
     try:
@@ -115,7 +115,7 @@ def inside(case: Case, calibration: Calibration) -> tuple[bool, ...]:
 
 
 def line(kind: str, n: int, seed: int, looks: bool) -> list[str]:
-    """Of one kind of session."""
+    """Lines of the table for one kind of session."""
     rng = np.random.default_rng([seed, list(KINDS).index(kind)])
     results = [outcome(KINDS[kind](rng), looks) for _ in range(n)]
     rows = []
