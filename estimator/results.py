@@ -208,13 +208,13 @@ class Calibration(
     gauge: str
     """What holds the block's frame: ``stand``, ``directions`` or ``nominal-axes`` (no net turn of all axes)."""
     site: Site | None = None
-    """Where the session was measured, as stated, SI; None of a result of an earlier version."""
+    """Site of the session, as stated, SI; None of a result of an earlier version."""
     parity: Json | None = None
     """``imu-parity/1``, where the calibration is a reference moved by what a recording shows."""
     thermal: ThermalCurves | None = None
     """Bias and scale factor over temperature, of a thermal programme; everything else is at its reference."""
     screening: tuple[ScreenFinding, ...] = ()
-    """What was found in the raw rows that it was made of, before they were averaged."""
+    """Findings of the screening of the raw rows that it was made of, before they were averaged."""
     set_aside: tuple[SetAside, ...] = ()
     """Gross readings that took no part."""
 

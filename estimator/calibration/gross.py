@@ -105,7 +105,7 @@ def with_set_aside(session: CalibrationSession, choice: GrossChoice) -> Calibrat
 
 
 def named(session: CalibrationSession, choice: GrossChoice) -> tuple[SetAside, ...]:
-    """What was set aside, by row; a stretch of one reading is one thing."""
+    """The readings set aside, by row; a stretch of one reading is one thing."""
     u, unit, predicted = session.readings, per_input(session), choice.predicted
     found, done = list[SetAside](), np.zeros(u.shape, dtype=bool)
     for j, i in np.argwhere(choice.at):

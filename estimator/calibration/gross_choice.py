@@ -1,4 +1,4 @@
-"""Which readings are gross: far outside the noise and everything smooth, and alone in their row and sensor."""
+"""Chooses the gross readings: far outside the noise and everything smooth, and alone in their row and sensor."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -46,7 +46,7 @@ CUT = 0.05
 
 @dataclass(frozen=True, eq=False)
 class GrossChoice:
-    """What of a session is set aside. R rows, m sensors."""
+    """The readings of a session to set aside. R rows, m sensors."""
 
     at: Array
     """(R, m) bool: what takes no part; all of a channel that is dead."""

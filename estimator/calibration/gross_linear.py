@@ -1,4 +1,4 @@
-"""What each reading should be where readings are linear in known functions: a robust regression a sensor.
+"""Predicts each reading where readings are linear in known functions: a robust regression a sensor.
 
 A least absolute deviations start, whose breakdown does not hang on the size of what is wrong, then least squares over
 the readings that agree, each held against the fit without it, until none changes sides. Residuals are deletion
@@ -24,10 +24,10 @@ RARE = 1e-3
 """Chance of a largest residual from which it is, too."""
 
 STEPS = 40
-"""Of reweighting towards least absolute deviations; half of them are usual."""
+"""Rounds of reweighting towards least absolute deviations; half of them are usual."""
 
 ROUNDS = 20
-"""Of readings changing sides; a handful is usual."""
+"""Rounds of readings changing sides; a handful is usual."""
 
 HALF = 0.6745
 """Standard deviations that half of all normal deviations lie within."""
@@ -44,7 +44,7 @@ FREEDOM = 2
 
 @dataclass(frozen=True, eq=False)
 class Predicted:
-    """What each reading should be by all others that agree. R rows, m sensors."""
+    """Prediction of each reading by all others that agree. R rows, m sensors."""
 
     value: Array
     """(R, m) reading units; NaN where nothing tells it."""
@@ -66,7 +66,7 @@ class Predicted:
 
 
 def nothing_predicted(readings: Array) -> Predicted:
-    """Of readings (R, m) of any unit."""
+    """The prediction where nothing is known of readings (R, m) of any unit."""
     return Predicted(*(np.full(readings.shape, np.nan) for _ in range(3)))
 
 

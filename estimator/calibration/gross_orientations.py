@@ -1,4 +1,4 @@
-"""What each accelerometer should read where the orientations are unknown: a robust fit of the whole block.
+"""Predicts each accelerometer where the orientations are unknown: a robust fit of the whole block.
 
 The fit begins from the rows that agree best, loses in every other row the readings that do not fit together, and then
 holds every reading against the fit without it, until none changes sides. A reading of a row that has but two others to
@@ -290,7 +290,7 @@ class GrossFound:
 
 
 def accelerometers_predicted(session: CalibrationSession, left_out: Array) -> GrossFound | None:
-    """What the accelerometers of a session should read; None where nothing stands out, or nothing tells it.
+    """Predicts the accelerometers of a session; None where nothing stands out, or nothing tells it.
 
     ``left_out`` (R, m) bool: readings that take no part to begin with.
     """

@@ -1,4 +1,4 @@
-"""Which slip makes a grossly wrong reading: by what it reads and by what it should."""
+"""Names the slip behind a grossly wrong reading: by what it reads and by what it should."""
 
 from collections.abc import Sequence
 from itertools import groupby
@@ -50,7 +50,7 @@ def stuck(readings: Array) -> Array:
 
 
 def slip_of(session: CalibrationSession, predicted: Predicted, j: int, i: int) -> str:
-    """Of the reading of sensor i in row j."""
+    """The likely slip of the reading of sensor i in row j."""
     u, right, sigma = session.readings, predicted.value[j, i], AGREES * predicted.sigma[j, i]
     wrong, middle = u[j, i], session.sensors[i].nominal_offset or 0.0
 
@@ -90,11 +90,11 @@ LIKELY = {
     UNPLUGGED: "the channel was not connected",
     STUCK: "the channel stood still",
 }
-"""By slip, in words."""
+"""Words for each slip."""
 
 
 def sentences(found: Sequence[SetAside]) -> tuple[str, ...]:
-    """What was set aside, in words; a row that repeats the one before in several channels is one thing."""
+    """The readings set aside, in words; a row that repeats the one before in several channels is one thing."""
     said = list[str]()
     for row, group in groupby(found, key=lambda aside: (aside.row, aside.slip == BEFORE)):
         together = list(group)
@@ -113,7 +113,7 @@ def sentences(found: Sequence[SetAside]) -> tuple[str, ...]:
 
 
 def in_words(aside: SetAside) -> str:
-    """What was set aside, and what to do about it."""
+    """One reading set aside, and what to do about it."""
     slip = LIKELY.get(aside.slip)
     likely = say(": {slip}", slip=slip) if slip else ""
     parts = {

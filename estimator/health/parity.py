@@ -28,7 +28,7 @@ PARAMETERS = ("scale", "bias", "axis")
 
 NOT_KNOWN = dict.fromkeys(("deviation", "uncertainty", "expanded", "probability_out", "critical"))
 FAILED: Mapping[str, Any] = {**NOT_KNOWN, "verdict": FAIL}
-"""Of every parameter of a sensor that fails."""
+"""Verdict on every parameter of a sensor that fails."""
 
 
 def judge_parity(

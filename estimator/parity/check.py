@@ -133,7 +133,7 @@ class ParityAccumulator:
             yield self.ledger.part(blocks.first * length >= max(over), living)
 
     def _without(self, looked: Looked, motion: str, false_alarm: float) -> ParityResult | None:
-        """What the sensors say that do not fail, all through the recording; None where too few are left."""
+        """The result of the sensors that do not fail, all through the recording; None where too few are left."""
         failed = {name for fault in looked.faults for name in fault.suspects}
         kept = np.array([k for k, name in enumerate(self.reference.names) if name not in failed])
         if not failed or len(kept) < FEWEST:
@@ -141,7 +141,7 @@ class ParityAccumulator:
         return self._part(self.ledger.part(np.ones(len(self.ledger.blocks()), dtype=bool), kept), motion, false_alarm)
 
     def _part(self, ledger: Ledger, motion: str, false_alarm: float) -> ParityResult | None:
-        """What a part of the recording says; None where it is too short to say anything."""
+        """The result of a part of the recording; None where it is too short."""
         try:
             return self._compared(ledger, motion, false_alarm)
         except ScheduleError:

@@ -51,7 +51,7 @@ FREEDOM = 0.25
 
 @dataclass(frozen=True, eq=False)
 class Looked:
-    """What was found: faults, and the sensors, by number, that say nothing any more once it began."""
+    """Result of a search: faults, and the sensors, by number, that say nothing any more once it began."""
 
     faults: tuple[CourseFault, ...]
     silent: tuple[int, ...]
@@ -161,7 +161,7 @@ class Search:
 
     @property
     def freedom(self) -> float:
-        """Of the noise."""
+        """Degrees of freedom of the noise."""
         return FREEDOM * len(self.course.p)
 
     @property

@@ -14,13 +14,13 @@ from estimator.parity.scan import Scan
 from estimator.session import Array
 
 PARTS = 4
-"""Of a block, at which an onset is tried."""
+"""Parts of a block, at which an onset is tried."""
 SIMPLER = 6.0
 """z² by which a kind must explain the course better than a plain step: odds of twenty."""
 TOGGLE = 25.0
 """z² that a return, or a relapse, must explain: one of all pairs of moments by chance in a thousand recordings."""
 CERTAIN = 0.9
-"""Of z²; what more returns add to a large change may be motion meanwhile, which is in proportion to nothing known."""
+"""Share of z² that counts: what more returns add to a large change may be motion meanwhile."""
 TOGGLES = 60
 """Stretches at most."""
 

@@ -25,7 +25,7 @@ EVERY_ROW = (ROTATION_ALIGNMENT, RATE_TABLE)
 
 @dataclass(frozen=True, eq=False)
 class Raw:
-    """What a table says of its rows' times; and its samples, if it is a raw log. R rows, m sensors."""
+    """The times of a table's rows; and its samples, if it is a raw log. R rows, m sensors."""
 
     readings: Array | None
     """(R, m), reading units, NaN where left out; None of averaged positions."""
@@ -91,7 +91,7 @@ def _declined(document: Fields) -> tuple[str, ...]:
 
 
 def _found_rate(columns: Columns, time: Array | None, sensors: tuple[Sensor, ...], screen: Screen) -> float | None:
-    """Of rows that are no positions; None of positions."""
+    """The rate of rows that are samples, Hz; None of positions."""
     means = [f"{sensor.name}_se" for sensor in sensors] + ["tilt_se_deg"]
     if not screen.looks_for("rate") or any(columns.has(name) for name in means):
         return None

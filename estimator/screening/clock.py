@@ -166,7 +166,7 @@ def rate_of(time: Array) -> float | None:
 
 
 def no_rate(rows: int, time: Array | None, held: float | None) -> str:
-    """What to tell whoever gives that many rows, which are no positions, without their rate."""
+    """The problem of so many rows, which are samples, without their rate."""
     if time is None:
         advice = say("for a raw log give sample_rate_hz")
     elif np.ptp(time) == 0:

@@ -1,4 +1,4 @@
-"""What a screening found, as facts that add up over the parts of a file, and each in a sentence."""
+"""Findings of a screening, as facts that add up over the parts of a file, and each in a sentence."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -12,7 +12,7 @@ Screening = tuple[ScreenFinding, ...]
 """Everything that was found in one file."""
 
 OFF = "off"
-"""What declines all kinds."""
+"""The word that declines all kinds."""
 
 ACTIONS = {
     "missing": LEFT_OUT, "no-data": LEFT_OUT, "sign-lost": CORRECTED_SAMPLES, "zero-vectors": LEFT_OUT,
@@ -22,7 +22,7 @@ ACTIONS = {
 }  # fmt: skip
 """Kind → what is done about it."""
 KINDS = tuple(ACTIONS)
-"""As a session file declines them."""
+"""All kinds, by the names under which a session file declines them."""
 
 
 def declined_by(stated: object) -> tuple[str, ...] | None:
