@@ -131,8 +131,8 @@ class ParityCourse:
         variance = variance * np.clip(own, 1.0, OWN**2)
         activity = self.activity(sensor)
         others = stirring(self.p @ basis, variance, activity)
-        stirred = max(others, min(stirring(x[:, None], variance, activity), OWN**2 * others))
-        swung = stirred * np.outer(activity, activity) * remembered(len(x), MEMORIES[0])
+        motion = max(others, min(stirring(x[:, None], variance, activity), OWN**2 * others))
+        swung = motion * np.outer(activity, activity) * remembered(len(x), MEMORIES[0])
         colour = colour_of(self.p @ basis, variance, self.fixed(basis, sensor) + swung, 0.5)
         alone = colour_of(x[:, None], variance, fixed + swung, SOUND, wandering=True)
         most = OWN**2 * colour.sum() + FAINT * float(np.median(variance))
@@ -147,10 +147,15 @@ def stirring(courses: Array, variance: Array, activity: Array) -> float:
     A body that begins to turn swings its sensors in ways that the vector does not show; how far is learned here, from
     what most changes do.
     """
-    active = activity >= np.quantile(activity, 1 - ACTIVE)
     beside = courses - median_filter(courses, size=(BESIDE, 1), mode="nearest")
+    return stirred(beside, variance, activity, MOST_SWINGS)
+
+
+def stirred(beside: Array, variance: Array, activity: Array, most: float) -> float:
+    """κ² of what strays (T, n) from its neighbours, from the part ``most`` of it that does not stand out."""
+    active = activity >= np.quantile(activity, 1 - ACTIVE)
     excess = (beside**2 - variance[:, None])[active] / np.maximum(activity[active], np.finfo(float).tiny)[:, None] ** 2
-    return max(float(np.quantile(excess, MOST_SWINGS) / chdtri(1, 1 - MOST_SWINGS)), 0.0)
+    return max(float(np.quantile(excess, most) / chdtri(1, 1 - most)), 0.0)
 
 
 def course_of(ledger: Ledger, norm: float | None, rate: float) -> ParityCourse | None:

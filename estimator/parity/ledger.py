@@ -4,12 +4,13 @@ A block begins as `BLOCK` seconds of samples. When there are too many, neighbour
 are twice as long from then on. A block keeps the mean of each sensor's input, how much the inputs moved within it, the
 extreme readings, by which a channel that ran into its end is known, and what lever arms, delays and vibration do to a
 mean: the moments of the angular rate, the change of the vector from end to end, its covariance. For the course in time
-it keeps by sensor how its halves differ, how often a reading stood still, and how parity and what the others say of it
-change from sample to sample.
+it keeps by sensor the means of its quarters, how often a reading stood still, and how parity and what the others say of
+it change from sample to sample.
 """
 
 import copy
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,8 +42,8 @@ class Blocks:
     """(B,) number in each."""
     mean: Array
     """(B, m) of the inputs, m/s² (rad/s)."""
-    halves: Array
-    """(B, m) half of what the mean of the block's second half differs from that of its first, m/s² (rad/s)."""
+    quarters: Array
+    """(B, m, 4) means of its quarters less its mean, m/s² (rad/s)."""
     motion: Array
     """(B, m) variance of the inputs within the block, (m/s²)² ((rad/s)²); 0 for averages."""
     jitter: Array
@@ -73,6 +74,11 @@ class Blocks:
     def __len__(self) -> int:
         return len(self.first)
 
+    @property
+    def halves(self) -> Array:
+        """(B, m) half of what the mean of the block's second half differs from that of its first, m/s² (rad/s)."""
+        return np.asarray(self.quarters @ HALVES)
+
     def at(self, chosen: Array) -> "Blocks":
         """Some of the blocks: by number (n,), or by bool (B,)."""
         return Blocks(*(column[chosen] for column in vars(self).values()))
@@ -96,7 +102,7 @@ class Blocks:
             first=left["first"] // 2,
             samples=samples,
             mean=mean("mean"),
-            halves=0.5 * (right["mean"] - left["mean"]),
+            quarters=np.concatenate([_paired(part) - mean("mean")[:, :, None] for part in (left, right)], axis=2),
             motion=np.maximum(left["motion"], right["motion"]),
             jitter=np.maximum(left["jitter"], right["jitter"]),
             flutter=mean("flutter"),
@@ -113,8 +119,22 @@ class Blocks:
         )
 
 
-BY_SENSOR = ("mean", "halves", "motion", "jitter", "flutter", "standing", "change", "lowest", "highest")
-"""Columns of blocks that hold a number for every sensor."""
+BY_SENSOR = ("mean", "quarters", "motion", "jitter", "flutter", "standing", "change", "lowest", "highest")
+"""Columns of blocks whose second axis is the sensors."""
+HALVES = np.array([-0.25, -0.25, 0.25, 0.25])
+
+
+def _paired(part: dict[str, Array]) -> Array:
+    """(B, m, 2) means of the halves of blocks."""
+    return np.asarray(part["mean"][:, :, None] + 0.5 * (part["quarters"][:, :, ::2] + part["quarters"][:, :, 1::2]))
+
+
+def quarters_of(a: Array) -> Array:
+    """(B, m, 4) means of the quarters of blocks (B, length, m) less their mean; a short block's share samples."""
+    length = a.shape[1]
+    edges = [k * length // 4 for k in range(5)]
+    means = [a[:, first : max(last, first + 1)].mean(axis=1) for first, last in pairwise(edges)]
+    return np.asarray(np.stack(means, axis=2) - a.mean(axis=1)[:, :, None])
 
 
 def pairs(vectors: Array) -> Array:
@@ -126,7 +146,7 @@ def pairs(vectors: Array) -> Array:
 def empty_blocks(m: int, count: int) -> Blocks:
     """Blocks of m sensors that hold zeros; one after the other, of one sample each."""
     width = dict.fromkeys(BY_SENSOR, m) | {"gain": 3, "shake": 6, "spin": 3, "spin_gain": 3, "spin_square": 6}
-    zeros = {name: np.zeros((count, n)) for name, n in width.items()}
+    zeros = {name: np.zeros((count, n)) for name, n in width.items()} | {"quarters": np.zeros((count, m, 4))}
     return Blocks(first=np.arange(count), samples=np.ones(count), parity_variance=np.zeros(count), **zeros)
 
 
@@ -232,7 +252,7 @@ class Ledger:
                 first=self._count + np.arange(len(chunks)),
                 samples=np.full(len(chunks), float(length)),
                 mean=a.mean(axis=1),
-                halves=0.5 * (a[:, -(length // 2) :].mean(axis=1) - a[:, : (length + 1) // 2].mean(axis=1)),
+                quarters=quarters_of(a),
                 motion=a.var(axis=1),
                 jitter=0.5 * (np.diff(a, axis=1) ** 2).sum(axis=1) / between,
                 flutter=0.5 * (np.diff(shown, axis=1) ** 2).sum(axis=1) / between,

@@ -17,11 +17,12 @@ import numpy as np
 from scipy.special import ndtri
 
 from estimator.parity.course import ParityCourse, course_of
+from estimator.parity.lateness import lateness
 from estimator.parity.ledger import Ledger
 from estimator.parity.reference import FEWEST
 from estimator.parity.results import DELAY, EXCHANGED, NOISE, RAMP, CourseFault
 from estimator.parity.scan import Scan, critical, tail
-from estimator.parity.shapes import FaultShape, best_onset, lag, shape_of
+from estimator.parity.shapes import FaultShape, shape_of
 from estimator.parity.signs import Exchange, Sign, exchange_of, growth_of
 from estimator.parity.standing import Standing, standing
 from estimator.session import Array
@@ -37,8 +38,12 @@ WRONG_SENSOR = 0.01
 """Chance that the true sensor is passed over, as of `hypotheses`."""
 NAMED = 5
 """Sensors that name one; two need one more."""
-LATE = 1.5
-"""Times a shift's z that a delay needs: swings that motion gives to sensors apart go with its changes as delays do."""
+LATE = 1.2
+"""Times the critical z that lateness needs: how far motion stirs is less well known than noise."""
+ASKEW = 0.03
+"""The same of lateness, which bias, load and clipped samples do not bend."""
+FOLLOWED = 4.0
+"""z from which a sensor is late, where parity already flutters with motion as it does beside a late sensor only."""
 OVER_NOISE = 2.0
 """Times the critical z from which a course says more than the noise that has grown with it."""
 PAIR = 3
@@ -125,7 +130,11 @@ class Search:
             return [self._exchanged(exchange)], list(exchange.pair)
         grown = self._sure(growth_of(self.course))
         scans = [self._scan(i, grown) for i in range(self.m)]
-        strongest = np.array([self._strongest(i, *scans[i]) for i in range(self.m)])
+        strongest = np.array([np.abs(z).max() for _, z in scans])
+        follows = grown is not None and grown.follows
+        late = self._late(FOLLOWED if follows else max(LATE * self.critical, float(strongest.max())))
+        if late is not None:
+            return late
         i, needed = int(np.argmax(strongest)), self.critical
         if grown is not None and strongest[i] < OVER_NOISE * max(grown.z, self.critical):
             i, needed = grown.sensor, OVER_NOISE * self.critical
@@ -133,10 +142,23 @@ class Search:
             return self._changed(i, *scans[i], grown, tail(strongest[i], self.tests, self.freedom))
         return ([], []) if grown is None else self._grown(grown)
 
-    def _strongest(self, sensor: int, scan: Scan, z: Array) -> float:
-        """z of the strongest change: a shift over any interval, or an answer that comes late from some moment on."""
-        late = best_onset(self.course, scan, DELAY, lag(self.course, sensor))
-        return max(float(np.abs(z).max()), sqrt(late.square) / LATE)
+    def _late(self, least: float) -> tuple[list[CourseFault], list[int]] | None:
+        """The sensor that comes late from some moment on, if its z is at least so much."""
+        d = self.course.p.shape[1]
+        alone = critical_chi2(LEVEL, d - 1, self.freedom) if d > 1 else np.inf
+        seen = lateness(self.course, self.rate)
+        own = [one for one in seen if one.across <= alone + ASKEW * (one.across + one.shape.square)]
+        own.sort(key=lambda one: -one.z)
+        if not own or own[0].z < least:
+            return None
+        best = own[0]
+        near = [one.sensor for one in own[1:] if one.z > 0 and one.z**2 > best.z**2 - self._margin]
+        if d > 1 and len(near) > 1:
+            return [], []
+        p = tail(best.z, self.tests, self.freedom)
+        return [self._dated(best.shape, [best.sensor, *near], DELAY, best.delay, best.sigma, p)], (
+            [] if near else [best.sensor]
+        )
 
     def _sure(self, sign: Sign | None) -> Sign | None:
         """The sign, if it is sure; blocks of fewer sensors than the ledger's hold no signs that are theirs alone."""
@@ -169,6 +191,11 @@ class Search:
         """z from which on a change is one."""
         return critical(LEVEL, self.tests, self.freedom)
 
+    @property
+    def _margin(self) -> float:
+        """z² by which a sensor must explain more than another to be told from it."""
+        return float(ndtri(WRONG_SENSOR / max(self.m - 1, 1))) ** 2
+
     def _changed(
         self, i: int, scan: Scan, z: Array, grown: Sign | None, p: float
     ) -> tuple[list[CourseFault], list[int]]:
@@ -183,8 +210,7 @@ class Search:
         d = len(seen)
         if d > 1 and total - along[i] > critical_chi2(LEVEL, d - 1, self.freedom) + SKEW * total:
             return self._two(shape, scan, seen, u, p)
-        margin = float(ndtri(WRONG_SENSOR / max(self.m - 1, 1))) ** 2
-        near = [int(k) for k in np.argsort(-along) if k != i and (d == 1 or along[k] > along[i] - margin)]
+        near = [int(k) for k in np.argsort(-along) if k != i and (d == 1 or along[k] > along[i] - self._margin)]
         if d > 1 and len(near) > 1:
             return [], []
         return [self._fault(shape, scan, [i, *near], p)], [] if near else [i]

@@ -82,11 +82,11 @@ class Scan:
         plain = np.concatenate([[0.0], np.cumsum(1.0 / self.variance)])
         left = norm > LEAST_NORM * np.abs(plain[:, None] - plain)
         z = np.where(left, (c[:, None] - c) / np.sqrt(np.maximum(norm, 1e-30)), 0.0)
-        return np.triu(z, SHORTEST)
+        return np.tril(np.triu(z, SHORTEST), T - SHORTEST)
 
 
 SHORTEST = 2
-"""Blocks of the shortest shift: one block alone may be a knock, or a clipped peak."""
+"""Blocks of the shortest shift, and of what lies beside it: one block alone may be a knock, or a clipped peak."""
 
 
 def scan_of(x: Array, variance: Array, colour: Array, fixed: Array) -> Scan:

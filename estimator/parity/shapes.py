@@ -10,7 +10,7 @@ import numpy as np
 
 from estimator.parity.course import ParityCourse
 from estimator.parity.results import DELAY, GAIN, INTERMITTENT, RAMP, STEP
-from estimator.parity.scan import Scan
+from estimator.parity.scan import SHORTEST, Scan
 from estimator.session import Array
 
 PARTS = 4
@@ -52,13 +52,16 @@ def entered(course: ParityCourse, onsets: Array) -> Array:
 
 
 def onsets(course: ParityCourse) -> Array:
-    """(n,) moments that are tried, blocks: never the first block, before which nothing would be sound."""
-    return np.arange(PARTS, PARTS * course.total) / PARTS
+    """(n,) moments that are tried, blocks: not the first blocks, before which too little would be sound."""
+    return np.arange(PARTS * SHORTEST, PARTS * course.total) / PARTS
 
 
-def best_onset(course: ParityCourse, scan: Scan, kind: str, factor: Array | None) -> FaultShape:
-    """Of a plain kind: a shift, its integral, or a shift of what the sensor feels (T,) times a size."""
-    tried = onsets(course)
+def best_onset(
+    course: ParityCourse, scan: Scan, kind: str, factor: Array | None, tried: Array | None = None
+) -> FaultShape:
+    """Of a plain kind: a shift, its integral, or a shift of what the sensor feels (T,) times a size; of all onsets, or
+    of those tried (n,), blocks."""
+    tried = onsets(course) if tried is None else tried
     if kind == RAMP:
         shapes = 0.5 * entered(course, tried) ** 2 + np.maximum(course.blocks.first[:, None] - tried, 0.0)
     else:
@@ -69,7 +72,7 @@ def best_onset(course: ParityCourse, scan: Scan, kind: str, factor: Array | None
     mean = float(weight @ tried / weight.sum())
     spread = float(np.sqrt(weight @ (tried - mean) ** 2 / weight.sum()))
     sigma = float(np.hypot(spread, 1.0 / (PARTS * np.sqrt(3))))
-    return FaultShape(kind, float(square[best]), float(tried[best]), sigma, None, shapes[:, best])
+    return FaultShape(kind, float(square[best]), mean, sigma, None, shapes[:, best])
 
 
 def coming_and_going(course: ParityCourse, scan: Scan, first: int, until: int) -> FaultShape:
@@ -117,7 +120,9 @@ def shape_of(course: ParityCourse, scan: Scan, sensor: int, z: Array) -> FaultSh
     plain = best_onset(course, scan, STEP, None)
     tried = [best_onset(course, scan, RAMP, None)]
     if np.ptp(felt) > 0:
-        tried += [best_onset(course, scan, GAIN, felt), best_onset(course, scan, DELAY, late)]
+        tried += [best_onset(course, scan, GAIN, felt)]
+        slow = best_onset(course, scan, DELAY, late)
+        tried += [slow] if scan.size(slow.shape)[0] > 0 else []
     began = int(np.searchsorted(course.blocks.first, np.floor(plain.since)))
     place = np.unravel_index(np.abs(z).argmax(), z.shape)
     starts = ((began, len(scan.white)), (int(place[0]), int(place[1])))

@@ -17,7 +17,7 @@ from scipy.special import chdtri
 
 from estimator.parity.course import FREE, ParityCourse
 from estimator.parity.results import NOISE
-from estimator.parity.scan import NEAR, Scan, colour_of, scan_of
+from estimator.parity.scan import NEAR, SHORTEST, Scan, colour_of, scan_of
 from estimator.parity.shapes import FaultShape, best_onset
 from estimator.session import Array
 
@@ -25,7 +25,7 @@ SURE = 60.0
 """χ² by which exchanged readings must explain more: of all pairs and onsets one by chance in 10⁹ recordings."""
 LEFT = 0.2
 """Share of the energy of parity that an exchange may leave at most, and that one sensor's course must leave more."""
-GROWN = 2.5
+GROWN = 4.0
 """Factor by which the variance must grow: motion of a new kind makes as much out of what is sound."""
 FEW = 5
 """Blocks that show a level."""
@@ -59,7 +59,7 @@ def exchange_of(course: ParityCourse) -> Exchange | None:
         swapped[:, [i, j]] = u[:, [j, i]]
         moved = course.p + (reference.felt(swapped) - a) @ V @ course.white
         after = (moved**2).sum(axis=1) * weight
-        won = np.cumsum((before - after)[::-1])[::-1]
+        won = np.cumsum((before - after)[::-1])[::-1][: 1 - SHORTEST]
         k = int(won.argmax())
         if won[k] > max(SURE, best.square if best else 0.0) and _alone(course, weight, before[k:], after[k:]):
             best = Exchange((i, j), float(course.blocks.first[k]) if k else 0.0, float(won[k]))

@@ -32,8 +32,6 @@ DOES = {
     EXCHANGED: "{who} have been exchanged {when}",
     INTERMITTENT: "{who} has been off now and then{by} {when}",
 }
-EARLY = "the readings of {who} have come early{by} {when}"
-"""Of a delay below zero."""
 REPAIR = "replace or repair {who}"
 REPAIR_CHANNEL = "replace or repair {who}, and check its channel and its plug"
 REMEDIES = {
@@ -63,7 +61,7 @@ def _in_words(fault: CourseFault, result: ParityResult, started_at: str | None) 
     names = [sensor.name for sensor in result.sensors if sensor.name in fault.suspects]
     who = joined(" and ", names)
     does = say(
-        EARLY if fault.kind == DELAY and (fault.size or 0.0) < 0 else DOES[fault.kind],
+        DOES[fault.kind],
         who=who if is_named else say("one of the sensors {names}", names=joined(", ", names)),
         by=_by(fault, result.kind) if fault.kind in SIZED else "",
         when=_when(fault, result, started_at),
@@ -83,7 +81,7 @@ def _by(fault: CourseFault, kind: str) -> str:
         return ""
     expanded = None if fault.sigma is None else COVERAGE * fault.sigma
     if fault.kind == DELAY:
-        return say(" by {size}", size=measured(abs(fault.size), expanded, MILLISECONDS))
+        return say(" by {size}", size=measured(fault.size, expanded, MILLISECONDS))
     if fault.kind == GAIN:
         return say(" by {size}", size=signed(fault.size, expanded, deviation_measure(kind, "scale", fault.size)))
     if fault.kind == RAMP:

@@ -244,11 +244,12 @@ def draw_flight(m: int, rng: np.random.Generator) -> Flight:
 
 
 def tumble(unit: Unit, rng: np.random.Generator) -> dict[str, Any]:
-    """The calibration: thirty still orientations."""
+    """The calibration: thirty still orientations, in which the body bends under its own weight."""
     up = rng.standard_normal((30, 3))
     up *= G / np.linalg.norm(up, axis=1, keepdims=True)
     error = unit.noise / 30.0
-    u = unit.scale * (up @ unit.axes.T + unit.bias + error * rng.standard_normal((30, len(unit.axes))))
+    bent = up @ (unit.axes + unit.bending).T
+    u = unit.scale * (bent + unit.bias + error * rng.standard_normal((30, len(unit.axes))))
     columns = {f"A{i + 1}": u[:, i].tolist() for i in range(u.shape[1])}
     errors = {f"A{i + 1}_se": [float(unit.scale[i] * error[i])] * 30 for i in range(u.shape[1])}
     return document(unit, columns | errors) | {"programme": "arbitrary-orientations"}

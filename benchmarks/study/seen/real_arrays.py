@@ -35,8 +35,9 @@ def of_sensors(session: CalibrationSession, chosen: tuple[int, ...]) -> Calibrat
     own = list(chosen)
     named = tuple(replace(session.sensors[k], name=f"A{place + 1}") for place, k in enumerate(own))
     return replace(
-        session, sensors=named, readings=session.readings[:, own], standard_errors=session.standard_errors[:, own]
-    )
+        session, sensors=named, readings=session.readings[:, own], standard_errors=session.standard_errors[:, own],
+        at_ends=None if session.at_ends is None else session.at_ends[:, own],
+    )  # fmt: skip
 
 
 @cache

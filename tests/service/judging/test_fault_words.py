@@ -84,12 +84,6 @@ def test_a_sensor_that_cannot_be_named_is_one_of_several() -> None:
     )
 
 
-def test_a_delay_below_zero_is_early() -> None:
-    assert said(replace(STUCK, kind="delay", size=-0.02)).startswith(
-        "The readings of A3 have come early by 20\u202fms since"
-    )
-
-
 def test_a_size_that_nobody_can_tell_is_not_said() -> None:
     assert said(replace(STUCK, kind="gain")).startswith(f"The scale factor of A3 has been off {SINCE}:")
 
