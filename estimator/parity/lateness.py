@@ -24,6 +24,8 @@ from estimator.session import Array
 
 CENTRED = 5
 """Blocks over whose mean parity is centred: a manoeuvre's length."""
+MOVES = 0.1
+"""Of the mean energy of ẋ, from which a block is in motion."""
 TYPICAL = 0.8
 """Part of the blocks in motion that must not stand out: a manoeuvre is long, so that few of many stir most."""
 ENOUGH = 4
@@ -118,7 +120,8 @@ def _of(course: ParityCourse, sensor: int, M: Array, N: Array, half: float) -> L
     strayed = y - shape[:, None] * median_filter(y / root[:, None], size=(BESIDE, 1), mode="nearest")
     sides = [strayed @ basis for basis in (u[:, None], across) if basis.size]
     variance = np.maximum.reduce([block_variance(side) for side in sides])
-    motion = stirred(sides[-1], variance, shape, TYPICAL)
+    moves = shape**2 >= MOVES * float((shape**2).mean())
+    motion = stirred(sides[-1][moves], variance[moves], shape[moves], TYPICAL)
     free = FREE**2 * float(np.median(variance)) / max(float((shape**2).mean()), np.finfo(float).tiny)
     noise = variance + motion * shape**2
     scan = scan_of(y @ u, noise, np.zeros(len(MEMORIES)), free * np.outer(shape, shape))

@@ -38,8 +38,8 @@ WRONG_SENSOR = 0.01
 """Chance that the true sensor is passed over, as of `hypotheses`."""
 NAMED = 5
 """Sensors that name one; two need one more."""
-LATE = 1.2
-"""Times the critical z that lateness needs: how far motion stirs is less well known than noise."""
+LATE = 0.85
+"""Of the critical z, which lateness needs: onsets alone are tried, and the larger noise of two is taken."""
 ASKEW = 0.03
 """The same of lateness, which bias, load and clipped samples do not bend."""
 FOLLOWED = 4.0

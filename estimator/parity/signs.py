@@ -25,7 +25,7 @@ SURE = 60.0
 """χ² by which exchanged readings must explain more: of all pairs and onsets one by chance in 10⁹ recordings."""
 LEFT = 0.2
 """Share of the energy of parity that an exchange may leave at most, and that one sensor's course must leave more."""
-GROWN = 4.0
+GROWN = 3.0
 """Factor by which the variance must grow: motion of a new kind makes as much out of what is sound."""
 FEW = 5
 """Blocks that show a level."""
@@ -107,7 +107,7 @@ def growth_of(course: ParityCourse) -> Sign | None:
         on = shape.shape > 0
         w, beta = _fit(power[~on], b.change[~on, i]) if (~on).sum() >= FEW else (float(explained.min()), 0.0)
         added = float(np.median(power[on] - w - beta * b.change[on, i]))
-        if size < np.log(GROWN) or added <= 0 or (best is not None and added <= best.size):
+        if size < np.log(GROWN) or on.sum() < FEW or added <= 0 or (best is not None and added <= best.size):
             continue
         noisier = shape.shape * added / visible[i] * course.along(i)[2] ** 2 / b.samples
         alone, beside = np.log(power[on]), np.log(power[on] / b.change[on, i])

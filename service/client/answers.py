@@ -71,6 +71,9 @@ class Unit(Said):
 
     serial: str
     unit_type: str
+    usable: bool
+    use: str
+    """Whether it may be used, in words, with what to do."""
     sessions: int
     last_session: str | None
     last_at: datetime | None

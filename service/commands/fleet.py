@@ -20,7 +20,7 @@ from service.commands.console import DEFAULT_SERVER, AsJson, AsLines, ListOutput
 from service.commands.speech import FAILED, output_language, translated
 from service.commands.upload import coloured
 from service.flags.records import FlagState
-from service.judging.use import Use, in_words
+from service.judging.use import Use
 from service.kit.measures import deviation_measure, measured, number
 from service.languages.language import Language
 from service.sessions.decision import Verdict
@@ -82,11 +82,12 @@ def _counted(verdict: Verdict, count: int, condition: Json) -> str:
 
 
 def _fleet_table(units: list[Json]) -> Table:
-    headings = ("unit", "type", "condition", "margin", "last session", "sessions", "why")
+    headings = ("unit", "use", "type", "condition", "margin", "last session", "sessions", "why")
     table = table_of(*headings, right=("margin", "sessions"))
     for unit in units:
         table.add_row(
             escape(unit["serial"]) + (f" [dim]({translated('simulated')})[/]" if unit["simulated"] else ""),
+            _use_of(unit),
             escape(unit["unit_type"]),
             coloured(unit["verdict"], unit["is_reference"], unit["said"]) if unit["verdict"] else "",
             translated(number(unit["margin"], 2)),
@@ -95,6 +96,11 @@ def _fleet_table(units: list[Json]) -> Table:
             escape(unit["reason"]),
         )
     return table
+
+
+def _use_of(unit: Json) -> str:
+    colour = USE_COLOURS[Use.YES if unit["usable"] else Use.NO]
+    return f"[{colour}]{escape(translated(unit['use']))}[/]"
 
 
 def history(
@@ -156,10 +162,10 @@ def usable(unit: Unit, server: Server = DEFAULT_SERVER, as_json: AsJson = False)
 
 
 def _show_usable(unit: str, answer: Json) -> None:
-    use = Use(answer["use"])
+    use = Use(answer["answer"])
     reservations = (f"{translated('But')}: {line}" for line in answer["reservations"])
     lines = (answer["why"], *answer["reasons"][1:], *reservations)
-    word = escape(translated(in_words(use, answer["action"])))
+    word = escape(translated(answer["use"]))
     head = f"[bold]{escape(unit)}[/]  [{USE_COLOURS[use]}]{word}[/]"
     screen().print(head, *(escape(translated(line)) for line in lines), sep="\n  ")
 

@@ -10,7 +10,7 @@ from pydantic import computed_field
 from estimator.message import joined
 from service.flags.records import Concern, Matter
 from service.fleet.condition import UnitSummary
-from service.judging.use import Use
+from service.judging.use import Use, in_words
 from service.judging.words import AGAIN, verdict_in_words
 from service.kit.answer import Hidden, answer
 from service.outlook.records import Action
@@ -184,7 +184,7 @@ class Usable:
 
     usable: bool
     """In doubt it is false."""
-    use: Use
+    answer: Use
     """`yes`, `with-reservation`, `no`, or `not-known-yet` while its verdict or dates are being worked out."""
     why: str
     """In one sentence."""
@@ -216,6 +216,12 @@ class Usable:
     def due(self) -> datetime | None:
         """The due date where it still counts: not where something else must be done first."""
         return self.until if self.usable or self.is_overdue else None
+
+    @computed_field  # type: ignore[prop-decorator]  # the one way to describe a property
+    @property
+    def use(self) -> str:
+        """The answer and what to do, in words."""
+        return in_words(self.answer, self.action)
 
     @computed_field  # type: ignore[prop-decorator]  # the one way to describe a property
     @property

@@ -57,7 +57,7 @@ def usable(facts: UseFacts, now: datetime) -> Usable:
     is_judged = not unit.is_reference and not _is_serviced_since(facts)
     return Usable(
         usable=not against,
-        use=use,
+        answer=use,
         why=against[0].text if against else _yes(facts),
         action=next((objection.action for objection in (against or reserved) if objection.action), ""),
         reasons=tuple(objection.text for objection in against),

@@ -49,7 +49,7 @@ def label_of(unit: UnitSummary, use: Usable, base: str, *, with_due: bool) -> La
     return Label(
         serial=unit.serial,
         unit_type=unit.unit_type,
-        use=("" if use.use is Use.YES else in_words(use.use, "")) if with_due else "",
+        use=("" if use.answer is Use.YES else in_words(use.answer, "")) if with_due else "",
         is_usable=use.usable,
         due=_due(use) if with_due else "",
         why=_why(use) if with_due else "",
@@ -69,7 +69,7 @@ def _due(use: Usable) -> str:
 
 
 def _why(use: Usable) -> str:
-    if use.use is Use.RESERVED and use.action not in ("", ASK_AGAIN):
+    if use.answer is Use.RESERVED and use.action not in ("", ASK_AGAIN):
         return say("{action}.", action=capitalised(use.action))
     if use.usable:
         return use.due_reason

@@ -9,7 +9,7 @@ from service.fleet.store import Fleet
 from service.judging.records import Usable
 from service.judging.usable_reading import usable_of
 from service.judging.usable_words import next_in_words
-from service.judging.use import Use, in_words
+from service.judging.use import Use
 from service.kit.measures import THIN, day_of, number
 from service.languages.language import Language
 from service.papers.certificate.facts import Fact
@@ -72,8 +72,8 @@ def status_paper(store: Store, serial: str, now: datetime) -> StatusPaper:
     return StatusPaper(
         unit=serial,
         day=day_of(now),
-        key=TONES[use.use],
-        use=in_words(use.use, use.action),
+        key=TONES[use.answer],
+        use=use.use,
         why=use.why,
         condition=condition_of(unit.verdict, is_reference=unit.is_reference),
         next="" if use.due is None else next_in_words(use),

@@ -82,7 +82,7 @@ class Faults(Uploads):
         self.expect(receipt["verdict"] == "fail" and sensor in receipt["reason"], f"{said}: {receipt['reason']}")
         usable = self.world.get(f"/units/{FLOWN}/usable")
         self.expect(not usable["usable"], f"{said}: the unit may be used: {usable['why']}")
-        if usable["session"] == receipt["id"] and usable["use"] == "no":
+        if usable["session"] == receipt["id"] and usable["answer"] == "no":
             self.expect(sensor in usable["why"], f"{said}: {usable['why']}")
         if not stays:
             self.tries(f"/sessions/{receipt['id']}/withdraw", BY)

@@ -137,7 +137,7 @@ class Flight:
         whole = len(self.inputs) // n * n
         p = ((self.inputs + self.noise)[:whole] @ V).reshape(-1, n, V.shape[1]).mean(axis=1)
         y = p @ V[sensor] / (V[sensor] @ V[sensor])
-        return float(np.sqrt(np.median(np.diff(y, 2) ** 2) / MEDIAN / 6.0))
+        return float(np.sqrt(np.nanmedian(np.diff(y, 2) ** 2) / MEDIAN / 6.0))
 
 
 def axes_of(m: int, rng: np.random.Generator) -> Array:

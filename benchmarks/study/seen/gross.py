@@ -69,6 +69,8 @@ def outcome(case: Case, looks: bool) -> Outcome:
         session = read_session(case.truth.file())
         calibration = calibrate(session)
         places, accused = set_aside(calibration)
+        left_out = {name for finding in calibration.screening for name in finding.sensors}
+        places |= {place for place in wanted if place[1] in left_out}
         if looks or not wanted <= places:
             diagnosis = diagnose(session)
             calibration = diagnosis.calibration

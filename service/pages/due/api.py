@@ -29,8 +29,8 @@ MOST_UNITS = 10_000
 FORMS = {"application/json": "json", "text/csv": "csv", XLSX: "xlsx"}
 COLUMNS = {
     "unit": str, "unit_type": str, "location": str, "custodian": str,
-    "owner": str, "due_on": str, "days": int, "condition": str, "use": str,
-    "said": str, "why": str,
+    "owner": str, "due_on": str, "days": int, "condition": str, "usable": bool,
+    "use": str, "why": str,
 }  # fmt: skip
 SHEET = (
     Column("Unit", width=16, is_named=True), Column("Type", width=22, is_named=True),
@@ -98,7 +98,7 @@ def _workbook(lines: Sequence[DueLine], now: datetime, language: Language) -> by
     book = Workbook(target, now, "Due list", language)
     rows = (
         (line.unit, line.unit_type, line.location or None, line.custodian or None, line.owner or None, line.due,
-         line.days, line.condition, line.said, line.why)
+         line.days, line.condition, line.use, line.why)
         for line in lines
     )  # fmt: skip
     book.table("Due list", SHEET, rows)

@@ -7,7 +7,7 @@ from datetime import datetime
 
 from service.fleet.condition import UnitSummary
 from service.judging.records import Usable
-from service.judging.use import Use, in_words
+from service.judging.use import Use
 from service.kit.answer import answer
 from service.kit.copying import copied
 from service.kit.measures import month_of
@@ -50,9 +50,11 @@ class DueLine:
     """Whole days until then; negative where it is overdue."""
     condition: str
     """By its latest session, in words."""
-    use: Use
-    """What it may be used for now."""
-    said: str
+    usable: bool
+    """Whether it may be used now."""
+    answer: Use
+    """The same, told from a reservation and from what is not known yet."""
+    use: str
     """The same in words, with what to do."""
     why: str
     """Why it is due then, or why there is no date."""
@@ -95,7 +97,8 @@ def _line(unit: UnitSummary, use: Usable) -> DueLine:
         due=use.until,
         days=None if use.until is None else (use.until - use.as_of).days,
         condition=condition_of(unit.verdict, is_reference=unit.is_reference).word,
+        usable=use.usable,
+        answer=use.answer,
         use=use.use,
-        said=in_words(use.use, use.action),
         why=use.due_reason or ("" if use.until else use.why),
     )

@@ -6,13 +6,12 @@ from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Query, Request, Response
 
-from service.fleet.condition import FleetCondition, UnitSummary
+from service.fleet.condition import FleetCondition
 from service.fleet.records import FleetQuery
 from service.fleet.store import Fleet
-from service.judging.words import unit_in_words
 from service.kit.libraries import pl
 from service.languages.language import asked
-from service.pages.unit.schemas import UnitPage, said_unit
+from service.pages.unit.schemas import UnitInUse, UnitPage, units_in_use
 from service.papers.fleet.paper import fleet_pdf
 from service.papers.fleet.report import fleet_report
 from service.papers.fleet.workbook import fleet_xlsx
@@ -28,17 +27,17 @@ FLEET_COLUMNS = {
     "reason": str,
     "worst_sensor": str, "worst_parameter": str, "margin": float,
     "diagnosis": str, "flags": int, "due": datetime, "lot": str,
-    "said": str, "last_at_ms": int, "due_ms": int,
+    "said": str, "usable": bool, "use": str, "last_at_ms": int, "due_ms": int,
 }  # fmt: skip
 
 
-def fleet_table(units: Sequence[UnitSummary]) -> "pl.DataFrame":
+def fleet_table(units: Sequence[UnitInUse]) -> "pl.DataFrame":
     """One row a unit."""
     return table_of([_unit_row(unit) for unit in units], FLEET_COLUMNS)
 
 
-def _unit_row(unit: UnitSummary) -> dict[str, Any]:
-    return vars(unit) | {"said": unit_in_words(unit), "last_at_ms": unit.last_at_ms, "due_ms": unit.due_ms}
+def _unit_row(unit: UnitInUse) -> dict[str, Any]:
+    return vars(unit) | {"last_at_ms": unit.last_at_ms, "due_ms": unit.due_ms}
 
 
 router = APIRouter(prefix="/fleet", tags=["fleet"])
@@ -76,8 +75,8 @@ def report_fleet(
     if form == "pdf":
         return as_file(fleet_pdf(store, fleet_report(store, now), asked(request.scope)), PDF, "fleet.pdf")
     window = Window(page, limit)
-    found = Fleet(store).units(FleetQuery(offset=window.offset, limit=limit))
+    found = units_in_use(store, Fleet(store).units(FleetQuery(offset=window.offset, limit=limit)), now)
     if form != "json":
         return as_table(fleet_table(found), form, "fleet")
-    answer = UnitPage(units=list(map(said_unit, found)), **window.place(len(found)))
+    answer = UnitPage(units=found, **window.place(len(found)))
     return Response(answer.model_dump_json(), media_type="application/json", headers=BY_HEADER)

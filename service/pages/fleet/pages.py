@@ -9,7 +9,7 @@ from service.fleet.condition import ConditionCount, FleetCondition, ToleranceUse
 from service.fleet.records import FleetChoices
 from service.groups.sections import FoundLine
 from service.judging.records import Usable
-from service.judging.use import Use, in_words
+from service.judging.use import Use
 from service.kit.copying import copied
 from service.outlook.rules.populations import Standout
 from service.pages.fleet.view import DUE, RETIRED, FleetView
@@ -187,8 +187,8 @@ def fleet_row(unit: UnitSummary, usable: Usable) -> FleetRow:
         margin=None if unit.used is None else margin_of(unit.used),
         flags=flags_in_words(unit.flags),
         due=usable.due,
-        use=usable.use,
-        said=in_words(usable.use, usable.action),
+        use=usable.answer,
+        said=usable.use,
         overdue=usable.is_overdue,
         where=joined(", ", filter(None, (unit.location, unit.custodian))),
         retired=unit.retired_at is not None,

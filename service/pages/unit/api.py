@@ -31,6 +31,7 @@ from service.pages.unit.schemas import (
     UnitPage,
     UnitReportSchema,
     said_unit,
+    units_in_use,
 )
 from service.papers.schemas import NewCustomer
 from service.people.admission import PersonOf
@@ -77,7 +78,8 @@ WORST_FIRST = Order.CONDITION
 
 @router.get("", responses=errors(422))
 def list_units(
-    store: Reading,
+    store: ReadingFleet,
+    now: Now,
     window: WindowOf,
     language: LanguageOf,
     verdict: WantedVerdict = None,
@@ -105,7 +107,9 @@ def list_units(
         order=order, backwards=backwards, after=after,
     )  # fmt: skip
     found = Fleet(store).units(wanted)
-    return UnitPage(units=[said_in(said_unit(unit), language) for unit in found], **window.place(len(found)))
+    return UnitPage(
+        units=[said_in(unit, language) for unit in units_in_use(store, found, now)], **window.place(len(found))
+    )
 
 
 @router.get(
@@ -181,11 +185,12 @@ def recalibrate_unit(
 
 
 @router.get("/{serial:path}", responses=errors(404, 422))
-def read_unit(serial: Serial, store: Reading, now: Now) -> UnitReportSchema:
+def read_unit(serial: Serial, store: ReadingFleet, now: Now) -> UnitReportSchema:
     """One unit: condition, type, reference, latest sessions, known breaks."""
     report = unit_report(store, serial, now)
-    found = UnitReportSchema.model_validate(report)
-    return found.model_copy(update={"temperatures_covered": covered_now(store, report)})
+    (summary,) = units_in_use(store, (report.summary,), now)
+    known = {"summary": summary, "temperatures_covered": covered_now(store, report)}
+    return UnitReportSchema.model_validate(vars(report) | known)
 
 
 @answer

@@ -12,7 +12,7 @@ from service.judging.covered import CoveredTemperatures
 from service.judging.records import Usable
 from service.judging.temperature_words import covered_in_words
 from service.judging.usable_words import next_in_words
-from service.judging.use import Use, in_words
+from service.judging.use import Use
 from service.kit.failure import unit_failed
 from service.kit.measures import NOISE, day_of, in_measure
 from service.outlook.charts import ParameterCourse, TrackPoint, history_charts
@@ -198,8 +198,8 @@ def unit_page(
     condition = condition_of(report.summary.verdict, is_reference=report.summary.is_reference)
     return UnitView(
         report=report,
-        use=usable.use,
-        said=in_words(usable.use, usable.action),
+        use=usable.answer,
+        said=usable.use,
         sentence=usable.why,
         reason=_reason(report.summary.reason or condition.meaning, usable),
         failed=unit_failed(report.summary.failed) if report.summary.failed else "",

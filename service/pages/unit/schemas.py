@@ -1,6 +1,8 @@
 """Shapes of units, types, the fleet and histories."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from datetime import datetime
 from typing import Annotated, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
@@ -8,11 +10,13 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 from service.fleet.condition import UnitSummary
 from service.judging.covered import CoveredTemperatures
 from service.judging.records import SaidVerdict, said
+from service.judging.usable_reading import usable_of
 from service.kit.answer import answer
 from service.kit.copying import copied
 from service.sessions.history_store import HistoryQuery
 from service.sessions.records import HistoryPoint
 from service.sessions.schemas import SaidSession, said_session
+from service.storage.queries import Store
 from service.types.records import UnitType
 from service.units.records import Service
 from service.web.fields import Body, Bound, Paged, Text, Window
@@ -70,10 +74,27 @@ def said_unit(unit: UnitSummary) -> SaidUnit:
     return SaidUnit(**said(unit))
 
 
+@answer
+@dataclass(frozen=True, kw_only=True)
+class UnitInUse(SaidUnit):
+    """One unit in short, and whether it may be used."""
+
+    usable: bool
+    """In doubt it is false."""
+    use: str
+    """The same in words, with what to do."""
+
+
+def units_in_use(store: Store, units: Sequence[UnitSummary], now: datetime) -> list[UnitInUse]:
+    """Units with what they may be used for, in their order."""
+    uses = usable_of(store, units, now)
+    return [UnitInUse(**said(unit), usable=uses[unit.serial].usable, use=uses[unit.serial].use) for unit in units]
+
+
 class UnitPage(Paged):
     """One page of units, worst first."""
 
-    units: list[SaidUnit] = Field(description="The units of this page.")
+    units: list[UnitInUse] = Field(description="The units of this page.")
 
 
 class UnitReportSchema(BaseModel):
@@ -81,7 +102,7 @@ class UnitReportSchema(BaseModel):
 
     model_config = ConfigDict(from_attributes=True)
 
-    summary: Annotated[SaidUnit, BeforeValidator(said_unit)] = Field(description="Its condition.")
+    summary: UnitInUse = Field(description="Its condition, and whether it may be used.")
     unit_type: UnitType = Field(description="Its type, with the tolerances that hold now.")
     reference_session: str | None = Field(
         description="What the next session will be judged against; null when that one becomes the reference."

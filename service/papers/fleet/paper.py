@@ -12,7 +12,6 @@ from service.fleet.rows_store import FleetRows
 from service.fleet.store import Fleet
 from service.judging.records import Usable
 from service.judging.usable_reading import usable_of
-from service.judging.use import in_words
 from service.kit.measures import COVERAGE, day_of, deviation_measure, measured, signed
 from service.languages.language import Language
 from service.outlook.charts import history_charts, tracks_of
@@ -78,7 +77,7 @@ def line_of(unit: UnitSummary, usable: Usable) -> FleetLine:
         unit_type=unit.unit_type,
         condition=condition,
         but=but(unit.reservations),
-        use=in_words(usable.use, usable.action),
+        use=usable.use,
         worst=joined(" ", filter(None, (unit.worst_sensor, unit.worst_parameter))),
         used="" if unit.used is None else unit.used.words,
         last="" if unit.last_at is None else day_of(unit.last_at),

@@ -10,7 +10,6 @@ from service.fleet.rows_store import FleetRows
 from service.fleet.store import Fleet
 from service.judging.records import Usable
 from service.judging.usable_reading import usable_of
-from service.judging.use import in_words
 from service.judging.words import unit_in_words
 from service.kit.measures import MEASURES, Measure, in_measure, value_measure
 from service.languages.language import Language
@@ -84,7 +83,7 @@ def _fleet_row(unit: UnitSummary, usable: Usable) -> tuple[Cell, ...]:
         usable.due, usable.is_overdue,
         unit.sessions, unit.flags, unit.simulated,
         unit.reason, unit.due_reason or None, unit.diagnosis, unit.last_session,
-        unit_in_words(unit), in_words(usable.use, usable.action),
+        unit_in_words(unit), usable.use,
     )  # fmt: skip
 
 

@@ -13,7 +13,7 @@ from estimator.session import ACCELEROMETER, GYROSCOPE, Array
 from service.errors import ConflictError
 from service.judging.records import Usable
 from service.judging.usable_reading import usable_unit
-from service.judging.use import Use, in_words
+from service.judging.use import Use
 from service.judging.words import verdict_in_words
 from service.papers.correction import corrected
 from service.sessions.calibrations_store import SessionNoises
@@ -90,8 +90,8 @@ def _uses(given: ExportInput) -> Iterator[str]:
     """What must be known before the numbers are used."""
     if given.state is not RecordState.ACCEPTED:
         yield f"THIS SESSION IS {given.state.value.upper()}"
-    if given.use.use is not Use.YES:
-        said = in_words(given.use.use, given.use.action)
+    if given.use.answer is not Use.YES:
+        said = given.use.use
         yield f"{given.use.as_of:%Y-%m-%d}: {said if given.use.usable else said.upper()}"
         yield from (*given.use.reasons, *given.use.reservations)
 

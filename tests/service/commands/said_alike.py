@@ -1,6 +1,8 @@
 """What a service says of one unit's use, wherever it says it."""
 
+from csv import DictReader
 from dataclasses import dataclass
+from io import StringIO
 from typing import Any
 
 import httpx
@@ -22,6 +24,8 @@ class FleetSaid:
     paper: str
     events: dict[str, Any]
     """Of the calendar, by serial number."""
+    lists: tuple[dict[str, tuple[bool, str]], ...]
+    """`usable` and `use` of every unit, by serial number, as each list for programs has them."""
 
 
 def plain(text: str) -> str:
@@ -36,18 +40,34 @@ def fleet_of(client: httpx.Client) -> FleetSaid:
         plain(client.get("/", headers=HTML).raise_for_status().text),
         plain(text_of(client.get("/api/v1/fleet/report", params={"format": "pdf"}).raise_for_status().content)),
         {str(event["SUMMARY"]).split(":")[0]: event for event in calendar.events},
+        _lists(client),
+    )
+
+
+def _lists(client: httpx.Client) -> tuple[dict[str, tuple[bool, str]], ...]:
+    listed = client.get("/api/v1/units", params={"limit": 1000, "retired": False}).raise_for_status().json()["units"]
+    table = client.get("/api/v1/fleet/report", params={"format": "csv"}).raise_for_status().text
+    due = client.get("/api/v1/fleet/due", headers={"Accept": "text/csv"}).raise_for_status().text
+    return (
+        {unit["serial"]: (unit["usable"], unit["use"]) for unit in listed},
+        {row["serial"]: (row["usable"] == "true", row["use"]) for row in DictReader(StringIO(table))},
+        {row["unit"]: (row["usable"] == "true", row["use"]) for row in DictReader(StringIO(due))},
     )
 
 
 def check_unit(client: httpx.Client, serial: str, fleet: FleetSaid) -> dict[str, Any]:
     """Holds everything that is said of a unit against the API's answer, which it returns."""
     answer: dict[str, Any] = client.get(f"/api/v1/units/{serial}/usable").raise_for_status().json()
-    said = in_words(Use(answer["use"]), answer["action"])
+    said = answer["use"]
+    assert said == in_words(Use(answer["answer"]), answer["action"])
     page = plain(client.get(f"/units/{serial}", headers=HTML).raise_for_status().text)
     assert f"<b>{said}.</b>" in page
     row = fleet.page.split(f'href="/units/{serial}"')[0].rpartition("<tr")[2]
-    assert (said in row) is (answer["use"] != Use.YES)
+    assert (said in row) is (answer["answer"] != Use.YES)
     assert said in fleet.paper
+    units, report, due = fleet.lists
+    known = (answer["usable"], said)
+    assert (units[serial], report[serial], due.get(serial, known)) == (known, known, known)
     _check_date(answer, page, _label(client, serial), fleet.events.get(serial))
     if answer["correction"]:
         _check_export(client, answer, said)
@@ -60,7 +80,7 @@ def _label(client: httpx.Client, serial: str) -> str:
 
 def _check_date(answer: dict[str, Any], page: str, label: str, event: Any) -> None:
     """A date stands where it counts, and else what to do in its place."""
-    use = Use(answer["use"])
+    use = Use(answer["answer"])
     is_overdue = answer["until"] is not None and answer["until"] < answer["as_of"]
     assert (event is None) is (answer["until"] is None)
     if event is not None:
@@ -85,5 +105,5 @@ def _check_export(client: httpx.Client, answer: dict[str, Any], said: str) -> No
         assert answer["why"] in found.json()["detail"]
         found = client.get(address, params=SYSTEM | {"force": "true"}).raise_for_status()
         said = said.upper()
-    assert (said in found.text) is (answer["use"] != Use.YES)
+    assert (said in found.text) is (answer["answer"] != Use.YES)
     assert all(plain(one) in found.text for one in answer["reservations"])

@@ -57,7 +57,7 @@ def test_a_sensor_that_stands_still_is_said_alike_everywhere(holding: Holding) -
     session, use, [flag] = answers(client, recording)
     assert (session["verdict"], session["reason"]) == ("fail", STUCK)
     assert (flag["matter"], flag["place"], flag["summary"]) == ("out-of-tolerance", "A3", STUCK)
-    assert (use["usable"], use["use"]) == (False, "no")
+    assert (use["usable"], use["answer"]) == (False, "no")
     assert use["why"] == f"Not fit by its session of 1 May 2026: {STUCK}"
     assert use["action"] == "replace or repair A3, and check its channel and its plug"
     page = client.get(f"/sessions/{session['id']}").text

@@ -103,7 +103,7 @@ CASES: dict[str, tuple[UseFacts, Use, str]] = {
 def test_a_case_has_its_answer_and_its_action(name: str) -> None:
     facts, use, action = CASES[name]
     found = usable(facts, NOON)
-    assert (found.use, found.action) == (use, action)
+    assert (found.answer, found.action) == (use, action)
     assert found.usable is (use in (Use.YES, Use.RESERVED))
     assert bool(found.reasons) is not found.usable
     assert (found.reasons or (found.why,))[0] == found.why

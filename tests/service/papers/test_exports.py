@@ -2,14 +2,17 @@
 
 from dataclasses import replace
 
+from service.judging.records import said
 from service.pages.fleet.api import fleet_table
+from service.pages.unit.schemas import UnitInUse
 from service.web.files import as_csv
 from tests.service.pages.records import unit_summary
 
 
 def exported(serial: str, margin: float) -> str:
     """The line of one unit."""
-    return bytes(as_csv(fleet_table([replace(unit_summary(), serial=serial, margin=margin)]), "x.csv").body).decode()
+    unit = UnitInUse(**said(replace(unit_summary(), serial=serial, margin=margin)), usable=True, use="May be used")
+    return bytes(as_csv(fleet_table([unit]), "x.csv").body).decode()
 
 
 def test_text_that_looks_like_a_formula_is_shown_as_text() -> None:

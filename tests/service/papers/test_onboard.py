@@ -139,7 +139,7 @@ def test_an_unfit_unit_has_none_unless_it_is_forced_and_then_the_file_says_so(cl
 def test_what_is_usable_with_a_reservation_says_it_in_every_file(client: httpx.Client) -> None:
     id = send(client, block(0.0))
     said = client.get("/api/v1/units/BA-017/usable").json()
-    assert said["use"] == "with-reservation"
+    assert said["answer"] == "with-reservation"
     for system in ("px4", "ardupilot", "kalibr", "ros2"):
         comments = [line for line in text(client, id, system).splitlines() if line.startswith("# ")]
         assert any("May be used with reservation" in line for line in comments)
