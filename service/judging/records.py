@@ -10,7 +10,7 @@ from pydantic import computed_field
 from estimator.message import joined
 from service.flags.records import Concern, Matter
 from service.fleet.condition import UnitSummary
-from service.judging.use import Use, in_words
+from service.judging.use import Use
 from service.judging.words import AGAIN, verdict_in_words
 from service.kit.answer import Hidden, answer
 from service.outlook.records import Action
@@ -186,6 +186,8 @@ class Usable:
     """In doubt it is false."""
     answer: Use
     """`yes`, `with-reservation`, `no`, or `not-known-yet` while its verdict or dates are being worked out."""
+    use: str
+    """The same in words, with what to do."""
     why: str
     """In one sentence."""
     action: str
@@ -216,12 +218,6 @@ class Usable:
     def due(self) -> datetime | None:
         """The due date where it still counts: not where something else must be done first."""
         return self.until if self.usable or self.is_overdue else None
-
-    @computed_field  # type: ignore[prop-decorator]  # the one way to describe a property
-    @property
-    def use(self) -> str:
-        """The answer and what to do, in words."""
-        return in_words(self.answer, self.action)
 
     @computed_field  # type: ignore[prop-decorator]  # the one way to describe a property
     @property

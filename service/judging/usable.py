@@ -13,7 +13,7 @@ from service.flags.records import Matter
 from service.judging import usable_words as words
 from service.judging.fault_words import remedy_in
 from service.judging.records import Usable, UseFacts
-from service.judging.use import Use
+from service.judging.use import Use, in_words
 from service.kit.failure import session_failed, unit_failed
 from service.kit.measures import day_of
 from service.outlook.records import Action
@@ -54,12 +54,14 @@ def usable(facts: UseFacts, now: datetime) -> Usable:
     against = tuple(sorted(_found(AGAINST, facts, now), key=lambda objection: objection.is_pending))
     reserved = _found(RESERVING, facts, now)
     use, unit = _use(against, reserved), facts.unit
+    action = next((objection.action for objection in (against or reserved) if objection.action), "")
     is_judged = not unit.is_reference and not _is_serviced_since(facts)
     return Usable(
         usable=not against,
         answer=use,
+        use=in_words(use, action),
         why=against[0].text if against else _yes(facts),
-        action=next((objection.action for objection in (against or reserved) if objection.action), ""),
+        action=action,
         reasons=tuple(objection.text for objection in against),
         reservations=tuple(objection.text for objection in reserved),
         until=None if unit.retired_at is not None else unit.due,
