@@ -154,12 +154,18 @@ def unclipped(ledger: Ledger, blocks: Blocks) -> Mask:
     """(B,) bool: no channel stood at its extreme, where that is the end of a range or rare enough to be one.
 
     Blocks are the ledger's, joined or not. A few clipped samples pass for none by the rule of `Rails`, and move a mean.
+    A channel that runs into the end where the others say that nothing could take it there is itself at fault, and the
+    blocks are kept to show it.
     """
     clean = np.ones(len(blocks), dtype=bool)
+    others, peak = ledger.reference.others(blocks.mean), PEAK * np.sqrt(blocks.change)
     for sign, extreme, end in ((1.0, blocks.highest, ledger.ends[0]), (-1.0, blocks.lowest, ledger.ends[1])):
         touched = sign * extreme >= end.value[0]
         often = end.count[0] >= np.maximum(PILED * end.count[1], PILED)
         rare = touched.mean(axis=0) < RARE
+        reached = sign * others + peak >= REACHED * sign * ledger.reference.felt(sign * end.value[0])
+        own = (touched & ~reached).sum(axis=0) >= OFTEN
+        touched &= reached | ~own
         clean &= ~(touched & (~np.isnan(end.limit) | (often & rare))).any(axis=1)
     return clean
 
@@ -167,6 +173,12 @@ def unclipped(ledger: Ledger, blocks: Blocks) -> Mask:
 PILED = 2
 """Times as often as at the reading next to it that a channel must stand at its extreme, where it is the end of a range;
 of the tail of noise fewer stand there than next to it."""
+PEAK = 8.0
+"""Root mean square changes of what a sensor feels from sample to sample, beyond which vibration hardly takes it."""
+REACHED = 0.8
+"""Of the end of a range, which vibration must take a channel to for it to be cut off there."""
+OFTEN = 5
+"""Blocks in which a channel at fault runs into the end."""
 RARE = 0.05
 """Share of the blocks in which a channel may stand at its extreme for it to pass for the end of a range."""
 

@@ -17,7 +17,7 @@ import numpy as np
 from scipy.special import ndtri
 
 from estimator.parity.course import ParityCourse, course_of
-from estimator.parity.lateness import lateness
+from estimator.parity.lateness import LONGEST, lateness
 from estimator.parity.ledger import Ledger
 from estimator.parity.reference import FEWEST
 from estimator.parity.results import DELAY, EXCHANGED, NOISE, RAMP, CourseFault
@@ -147,7 +147,11 @@ class Search:
         d = self.course.p.shape[1]
         alone = critical_chi2(LEVEL, d - 1, self.freedom) if d > 1 else np.inf
         seen = lateness(self.course, self.rate)
-        own = [one for one in seen if one.across <= alone + ASKEW * (one.across + one.shape.square)]
+        own = [
+            one
+            for one in seen
+            if one.across <= alone + ASKEW * (one.across + one.shape.square) and one.delay <= LONGEST
+        ]
         own.sort(key=lambda one: -one.z)
         if not own or own[0].z < least:
             return None

@@ -14,6 +14,8 @@ from tests.estimator.parity.cases import block, recording
 ONSET, RATE = 1400, 20.0
 """Row of the onset, of 2400; 20 Hz."""
 SINCE = ONSET / RATE
+LATE = 0.25
+"""s"""
 
 
 @cache
@@ -48,6 +50,15 @@ def shaking() -> Array:
     return later() + 0.05 * np.random.default_rng(1).standard_normal(len(later()))
 
 
+def beyond_its_range() -> Array:
+    return np.clip(later() + 12.0 * np.random.default_rng(1).standard_normal(len(later())), -20.0, 20.0)
+
+
+def late() -> Array:
+    rows = np.arange(len(flight().readings))
+    return np.interp(rows - LATE * RATE, rows, flight().readings[:, 2])[ONSET:]
+
+
 def loose() -> Array:
     return later() + 0.3 * (np.arange(len(later())) // 100 % 2 == 0)
 
@@ -62,6 +73,8 @@ def loose() -> Array:
         ("full-scale", lambda: 1e3),
         ("gain", lambda: 1.05 * later()),
         ("noise", shaking),
+        ("noise", beyond_its_range),
+        ("delay", late),
         ("intermittent", loose),
     ],
 )
@@ -84,6 +97,11 @@ def test_the_size_of_a_step_is_found_within_its_sigma() -> None:
     (fault,) = failed(later() + block(6)[0].scale[2] * 0.05).faults
     assert fault.size is not None
     assert abs(fault.size - 0.05) < 4 * (fault.sigma or 0.0) + 1e-3
+
+
+def test_the_size_of_a_delay_is_that_of_quick_turns_too() -> None:
+    (fault,) = failed(late()).faults
+    assert fault.size == pytest.approx(LATE, abs=0.03)
 
 
 def test_before_a_step_nothing_has_changed_and_after_it_its_sensor_has() -> None:
