@@ -21,7 +21,7 @@ T = TypeVar("T")
 SENTENCES = frozenset(
     (
         *("why", "action", "reason", "reasons", "reservations", "summary", "proposal", "text", "advice", "said"),
-        *("condition", "due_reason", "what", "before", "after"),
+        *("condition", "due_reason", "use", "what", "before", "after"),
     )
 )
 """Fields of records that are said to people."""
