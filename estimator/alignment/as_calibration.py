@@ -6,7 +6,7 @@ the misalignments E_xz and E_yz, the third with the scale 1 + κ. What a program
 ``observable``: it is not judged.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,7 +62,8 @@ def alignment_calibration(result: AlignmentResult, rows: NDArray[np.bool_] | Non
 def rate_table_calibration(result: RateTableResult) -> Calibration:
     """E, ε and κ of a rate table; the residuals are those of every whole turn."""
     residuals = _residuals(result.residuals, result.residual_sigma, result.turn_times)
-    return _calibration("rate-table/whole-turns", result, list(AXES[2:]), residuals, "turn axis")
+    found = _calibration("rate-table/whole-turns", result, list(AXES[2:]), residuals, "turn axis")
+    return replace(found, set_aside=result.set_aside)
 
 
 def _known(axis: Axis, names: tuple[str, ...]) -> Axis:

@@ -8,10 +8,10 @@ turn at table rate w is, for the axes x, y, z of the reduced block,
 E and κ follow from turns of different rates, at best of both directions; their difference is free of every bias. Each
 whole turn is one row of the regression. Its covariance is that of the stated standard errors, else the turns' scatter
 gives it, widened by ν/(ν − 2) as Student's t is. The table's own rate is taken for exact: κ is the scale error against
-the table. ε_z needs the latitude and an upright axis.
+the table. ε_z needs the latitude and an upright axis. Gross readings are set aside first.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -20,6 +20,7 @@ from estimator.alignment.axes import TINY, Triad, triad
 from estimator.alignment.positions import interval
 from estimator.alignment.results import RateTableResult
 from estimator.applied_vector import EARTH_RATE
+from estimator.calibration.gross import on_table
 from estimator.errors import Problem, ScheduleError, problem_at
 from estimator.least_squares import least_squares
 from estimator.message import say
@@ -81,6 +82,7 @@ def rate_table(session: CalibrationSession) -> RateTableResult:
             ]
         )
     row = interval(session)
+    session = without_gross_rows(session, row)
     gyros = triad(session, GYROSCOPE, row)
     turns = whole_turns(session, gyros.values, row)
     _require_both_directions(turns)
@@ -88,14 +90,37 @@ def rate_table(session: CalibrationSession) -> RateTableResult:
     return _result(session, turns, gyros)
 
 
+def without_gross_rows(session: CalibrationSession, row: float) -> CalibrationSession:
+    """The session with what was expected in place of gross readings, which `set_aside` names; rows of ``row`` s."""
+    assert session.turn_rate is not None
+    _, start, stop = _stretches_of_turns(session.turn_rate, row)
+    count = np.arange(len(session.turn_rate))[:, None]
+    turning = np.asarray(((count >= start - WHOLE) & (count < stop - WHOLE)).any(axis=1))
+    azimuth = row * (np.cumsum(session.turn_rate) - session.turn_rate / 2)
+    return replace(on_table(session, azimuth, turning), standard_errors=session.standard_errors)
+
+
 def whole_turns(session: CalibrationSession, rates: Array, row: float) -> WholeTurns:
     """Every whole turn of every stretch of one table rate; rates (R, 3) rad/s, ``row`` s."""
     assert session.turn_rate is not None
-    change = np.flatnonzero(np.diff(session.turn_rate)) + 1
-    edges = np.concatenate([[0], change, [len(rates)]]).tolist()
+    speed, start, stop = _stretches_of_turns(session.turn_rate, row)
+    total = np.vstack([np.zeros(3), np.cumsum(rates, axis=0)])
+    return WholeTurns(
+        rates=speed,
+        means=(_at(total, stop) - _at(total, start)) / (stop - start)[:, None],
+        times=row * (start + stop) / 2,
+        rows=stop - start,
+    )
+
+
+def _stretches_of_turns(turn_rate: Array, row: float) -> tuple[Array, Array, Array]:
+    """(T,) rate, rad/s, first row and one past the last, fractions included, of every whole turn; ScheduleError where
+    there is none."""
+    change = np.flatnonzero(np.diff(turn_rate)) + 1
+    edges = np.concatenate([[0], change, [len(turn_rate)]]).tolist()
     complete, short = [], []
     for first, last in pairwise(edges):
-        speed = float(session.turn_rate[first])
+        speed = float(turn_rate[first])
         if speed == 0:
             continue
         length = TURN / abs(speed) / row
@@ -112,14 +137,8 @@ def whole_turns(session: CalibrationSession, rates: Array, row: float) -> WholeT
         complete += [(speed, first + k * length, first + (k + 1) * length) for k in range(count)]
     if not complete:
         raise ScheduleError(short or [Problem("turn_rate_deg_s", "the table never turns; give its rate in every row")])
-    start, stop = np.array([turn[1:] for turn in complete]).T
-    total = np.vstack([np.zeros(3), np.cumsum(rates, axis=0)])
-    return WholeTurns(
-        rates=np.array([turn[0] for turn in complete]),
-        means=(_at(total, stop) - _at(total, start)) / (stop - start)[:, None],
-        times=row * (start + stop) / 2,
-        rows=stop - start,
-    )
+    speeds, start, stop = np.array(complete).T
+    return speeds, start, stop
 
 
 def _at(total: Array, place: Array) -> Array:
@@ -183,6 +202,7 @@ def _result(session: CalibrationSession, turns: WholeTurns, gyros: Triad) -> Rat
         residuals=residuals,
         residual_sigma=np.sqrt(np.diag(row_covariance)) / weight[:, None],
         fit=fit,
+        set_aside=session.set_aside,
     )
 
 

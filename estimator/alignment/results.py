@@ -6,7 +6,7 @@ import numpy as np
 
 from estimator.codec import DEGREES, Document
 from estimator.results import Estimate, Fit
-from estimator.session import Array
+from estimator.session import Array, SetAside
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +101,8 @@ class AlignmentResult(
 class RateTableResult(
     Document,
     format="imu-rate-table/1",
-    order=("unit", "turns", "rates_deg_s", "parameters", "names", "covariance", "fit"),
+    order=("unit", "turns", "rates_deg_s", "parameters", "names", "covariance", "fit", "set_aside"),
+    optional=("set_aside",),
     keys={"names": "covariance.names", "covariance": "covariance.total"},
 ):
     """Mounting errors, azimuth scale and biases of a block's gyros from whole turns both ways."""
@@ -123,6 +124,8 @@ class RateTableResult(
     residual_sigma: Array
     """(T, 3) rad/s."""
     fit: Fit
+    set_aside: tuple[SetAside, ...] = ()
+    """Gross readings, which took no part."""
 
     def parameter(self, name: str) -> Estimate:
         """Value and sigma; both None when it is not known."""

@@ -2,10 +2,10 @@
 
 A zero, a lost sign, a decimal point, a neighbour's column or an unplugged connector spoils a least-squares fit, and
 with it everything that is judged by the fit. So every reading is first held against what the rest of the session
-predicts for it, in a robust fit of its own: `gross_linear` where the readings are linear in known functions,
-`gross_orientations` where every orientation is unknown. What stands far outside both the noise and everything smooth,
-alone in its row and its sensor (`gross_choice`), takes no part: its variance is infinite, and in its place stands what
-was expected. The robust fit is made only where a plain one leaves something that stands out.
+predicts for it, in a robust fit of its own: `gross_linear` where the readings are linear in known functions (on a
+stand, on a rate table), `gross_orientations` where every orientation is unknown. What stands far outside both the noise
+and everything smooth, alone in its row and its sensor (`gross_choice`), takes no part: its variance is infinite, and in
+its place stands what was expected. The robust fit is made only where a plain one leaves something that stands out.
 Source: Rousseeuw & Leroy 1987, Robust Regression and Outlier Detection; Hadi & Simonoff 1993, JASA 88, 1264.
 """
 
@@ -20,7 +20,7 @@ from estimator.calibration.gross_choice import GrossChoice, chosen
 from estimator.calibration.gross_linear import harmonics, live, nothing_predicted, regression, sticks_out
 from estimator.calibration.gross_slips import stuck
 from estimator.on_demand import function_on_demand
-from estimator.session import ACCELEROMETER, TWO_AXIS_STAND, Array, CalibrationSession, SetAside
+from estimator.session import ACCELEROMETER, RATE_TABLE, TWO_AXIS_STAND, Array, CalibrationSession, SetAside
 
 if TYPE_CHECKING:
     from estimator.calibration.gross_orientations import accelerometers_predicted
@@ -53,6 +53,20 @@ def on_stand(session: CalibrationSession, basis: Array) -> CalibrationSession:
     return with_set_aside(session, chosen(session, predicted))
 
 
+def on_table(session: CalibrationSession, azimuth: Array, turning: Array) -> CalibrationSession:
+    """A session on a rate table without its gross readings in the rows ``turning`` (R,) bool of whole turns, at
+    ``azimuth`` (R,) rad: each gyro reads its bias, a part of the table's rate and of the Earth's level rotation."""
+    assert session.turn_rate is not None
+    u, errors = session.readings[turning], stated(session)[turning]
+    level = (np.sin(azimuth), np.cos(azimuth))
+    basis = live(np.column_stack([np.ones(len(azimuth)), session.turn_rate, *level])[turning])
+    if not (sticks_out(basis, u, errors) | stuck(u).any(axis=0)).any():
+        return session
+    predicted, told = nothing_predicted(session.readings), regression(basis, u, errors, stuck(u))
+    predicted.value[turning], predicted.sigma[turning], predicted.t[turning] = told.value, told.sigma, told.t
+    return with_set_aside(session, chosen(session, predicted))
+
+
 def in_orientations(session: CalibrationSession) -> CalibrationSession:
     """The same in unknown orientations: accelerometers by each other and gravity, gyros by their own rest."""
     u, gyro = session.readings, np.array([s.kind != ACCELEROMETER for s in session.sensors])
@@ -80,7 +94,7 @@ def stated(session: CalibrationSession) -> Array:
     more = (unit * [s.bias_repeatability for s in session.sensors]) ** 2
     if session.count_time is not None:
         more = more + np.where(gyro, session.quantisation, 0.0)
-    if session.programme != TWO_AXIS_STAND:
+    if session.programme not in (TWO_AXIS_STAND, RATE_TABLE):
         more = more + np.where(gyro, (unit * EARTH_RATE) ** 2 / 3, 0.0)
     elif session.tilt_error is not None:
         more = more + np.where(gyro, 0.0, (unit * STANDARD_GRAVITY * session.tilt_error[:, None]) ** 2)

@@ -11,7 +11,7 @@ from estimator.calibration.gross_linear import Predicted
 from estimator.calibration.gross_slips import BEFORE, PLAIN, STUCK, same, slip_of, stuck
 from estimator.forward import response
 from estimator.parameters import nominal
-from estimator.session import ACCELEROMETER, TWO_AXIS_STAND, Array, CalibrationSession
+from estimator.session import ACCELEROMETER, RATE_TABLE, TWO_AXIS_STAND, Array, CalibrationSession
 
 GROSS = 12.0
 """Standard errors beyond which a reading is gross: twice what chance does to the largest of a million readings; what is
@@ -68,12 +68,15 @@ def chosen(
     held, cut = standing_still(session, predicted), clipped(session, predicted)
     for j, who in (suspects or {}).items():
         cut[j] |= cut[j, list(who)].any()
+    shown = shown_by_rows(session, predicted)
     far = (apart(np.abs(np.where(held, 0.0, predicted.t))) | held) & ~cut
+    if session.programme == RATE_TABLE:
+        far &= ~shown
     slips = {(int(j), int(i)): slip_of(session, predicted, int(j), int(i)) for j, i in np.argwhere(far)}
     plain = np.zeros(far.shape, dtype=bool)
     for place, slip in slips.items():
         plain[place] = slip in PLAIN
-    far &= plain | ~(shown_by_rows(session, predicted) | lasting(session, far, predicted))
+    far &= plain | ~(shown | lasting(session, far, predicted))
     few = (far & ~plain).sum(axis=0) <= np.maximum(SOME, MOST * len(far))
     at = far & (plain | few)
     twice = repeated(session, far)
@@ -168,11 +171,11 @@ def clipped(session: CalibrationSession, predicted: Predicted) -> Array:
 
 
 def shown_by_rows(session: CalibrationSession, predicted: Predicted) -> Array:
-    """(R, m) bool: rows on a stand that at least half of a kind's sensors show, two or more: the stand's, or the
-    record's. In unknown orientations a row of its own direction takes up what all sensors show."""
+    """(R, m) bool: rows on a stand or table that at least half of a kind's sensors show, two or more: the stand's, or
+    the record's. In unknown orientations a row of its own direction takes up what all sensors show."""
     shows, kinds = np.nan_to_num(np.abs(predicted.t)) > BESIDE, np.array([s.kind for s in session.sensors])
     rows = np.zeros(shows.shape, dtype=bool)
-    for kind in np.unique(kinds) if session.programme == TWO_AXIS_STAND else ():
+    for kind in np.unique(kinds) if session.programme in (TWO_AXIS_STAND, RATE_TABLE) else ():
         alike = kinds == kind
         count = shows[:, alike].sum(axis=1)
         rows[:, alike] = (count >= max(2.0, alike.sum() / 2))[:, None]
@@ -187,6 +190,8 @@ def lasting(session: CalibrationSession, far: Array, predicted: Predicted) -> Ar
     ends[[0, R]] = True
     if session.flipped is not None:
         ends[1:-1] = np.diff(session.flipped)
+    if session.turn_rate is not None:
+        ends[1:-1] = np.diff(session.turn_rate) != 0
     side, found = np.where(far, np.sign(predicted.t), 0.0), np.zeros(far.shape, dtype=bool)
     for i in range(m):
         steps = np.abs(np.diff(np.log(np.abs(np.where(far[:, i], predicted.t[:, i], 1.0)))))
