@@ -39,8 +39,8 @@ ESTIMATOR_LAYERS = (
     {"results"},
     {"allan", "forward", "long_logs", "writing"},
     {"causes"},
-    {"simulate", "calibration", "alignment", "parity"},
-    {"thermal"},
+    {"simulate", "calibration", "parity"},
+    {"alignment", "thermal"},
     {"correction", "diagnosis", "health", "programmes", "readiness"},
     {"groups", "hiding", "nominal_vector", "planning"},
 )
