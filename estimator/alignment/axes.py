@@ -43,17 +43,18 @@ def reduction(axes: Array, covariance: Array) -> tuple[Array, Array]:
     return outcome @ weighted.T, outcome
 
 
-def triad(session: CalibrationSession, kind: str, interval: float) -> Triad:
+def triad(session: CalibrationSession, kind: str, interval: float, measured: Array | None = None) -> Triad:
     """The sensors of a kind as three axes; ``interval`` is the time of a row, s.
 
-    Sensors are weighted by their stated standard errors, else by the scatter of their readings from row to row.
+    Sensors are weighted by their stated standard errors, else by the scatter of their readings from row to row, of
+    those rows that were ``measured`` (R,) bool, all unless given.
     """
     chosen = of_kind(session, kind)
     require_alive(session, chosen)
     inputs, per_input = inputs_of(session, kind)
     stated = session.standard_errors[:, chosen] / per_input
     known = bool(np.isfinite(stated).all())
-    variance = np.mean(stated**2, axis=0) if known else scatter(inputs)
+    variance = np.mean(stated**2, axis=0) if known else scatter(inputs if measured is None else inputs[measured])
     axes = np.stack([session.sensors[i].nominal_axis for i in chosen])
     matrix, covariance = reduction(axes, np.diag(variance))
     return Triad(inputs @ matrix.T, covariance if known else None, len(chosen))

@@ -36,6 +36,8 @@ FEWEST_TURNS = 6
 """Whole turns in all; fewer leave no scatter to take the uncertainty from."""
 WHOLE = 1e-6
 """Rows by which a whole turn may end early: the rounding of stated rates, not a missing part of a turn."""
+MOST = 0.5
+"""Part of a turn's rows that must have been measured: a turn mostly of what was expected measures nothing."""
 TURN = 2 * np.pi
 """rad."""
 DISAGREEMENT = 0.05
@@ -56,7 +58,7 @@ class WholeTurns:
     times: Array
     """(T,) middle, s."""
     rows: Array
-    """(T,) number of rows, fractions of the last one included."""
+    """(T,) number of rows that were measured, fractions of the last one included."""
 
 
 def rate_table(session: CalibrationSession) -> RateTableResult:
@@ -82,45 +84,33 @@ def rate_table(session: CalibrationSession) -> RateTableResult:
             ]
         )
     row = interval(session)
-    session = without_gross_rows(session, row)
-    gyros = triad(session, GYROSCOPE, row)
-    turns = whole_turns(session, gyros.values, row)
+    session, measured = without_gross_rows(session, row)
+    gyros = triad(session, GYROSCOPE, row, measured)
+    turns = whole_turns(session, gyros.values, row, measured)
     _require_both_directions(turns)
     _require_following(turns)
     return _result(session, turns, gyros)
 
 
-def without_gross_rows(session: CalibrationSession, row: float) -> CalibrationSession:
-    """The session with what was expected in place of gross readings, which `set_aside` names; rows of ``row`` s."""
+def without_gross_rows(session: CalibrationSession, row: float) -> tuple[CalibrationSession, Array]:
+    """The session, rows of ``row`` s, with what was expected in place of gross readings, which `set_aside` names; and
+    (R,) bool whether every reading of a row was measured."""
     assert session.turn_rate is not None
-    _, start, stop = _stretches_of_turns(session.turn_rate, row)
-    count = np.arange(len(session.turn_rate))[:, None]
-    turning = np.asarray(((count >= start - WHOLE) & (count < stop - WHOLE)).any(axis=1))
     azimuth = row * (np.cumsum(session.turn_rate) - session.turn_rate / 2)
-    return replace(on_table(session, azimuth, turning), standard_errors=session.standard_errors)
+    found = on_table(session, azimuth)
+    measured = np.asarray(~np.isinf(found.standard_errors).any(axis=1))
+    return replace(found, standard_errors=session.standard_errors), measured
 
 
-def whole_turns(session: CalibrationSession, rates: Array, row: float) -> WholeTurns:
-    """Every whole turn of every stretch of one table rate; rates (R, 3) rad/s, ``row`` s."""
+def whole_turns(session: CalibrationSession, rates: Array, row: float, measured: Array) -> WholeTurns:
+    """Every whole turn of every stretch of one table rate that was ``measured`` (R,) bool in most of its rows; rates
+    (R, 3) rad/s, ``row`` s."""
     assert session.turn_rate is not None
-    speed, start, stop = _stretches_of_turns(session.turn_rate, row)
-    total = np.vstack([np.zeros(3), np.cumsum(rates, axis=0)])
-    return WholeTurns(
-        rates=speed,
-        means=(_at(total, stop) - _at(total, start)) / (stop - start)[:, None],
-        times=row * (start + stop) / 2,
-        rows=stop - start,
-    )
-
-
-def _stretches_of_turns(turn_rate: Array, row: float) -> tuple[Array, Array, Array]:
-    """(T,) rate, rad/s, first row and one past the last, fractions included, of every whole turn; ScheduleError where
-    there is none."""
-    change = np.flatnonzero(np.diff(turn_rate)) + 1
-    edges = np.concatenate([[0], change, [len(turn_rate)]]).tolist()
+    change = np.flatnonzero(np.diff(session.turn_rate)) + 1
+    edges = np.concatenate([[0], change, [len(rates)]]).tolist()
     complete, short = [], []
     for first, last in pairwise(edges):
-        speed = float(turn_rate[first])
+        speed = float(session.turn_rate[first])
         if speed == 0:
             continue
         length = TURN / abs(speed) / row
@@ -138,11 +128,19 @@ def _stretches_of_turns(turn_rate: Array, row: float) -> tuple[Array, Array, Arr
     if not complete:
         raise ScheduleError(short or [Problem("turn_rate_deg_s", "the table never turns; give its rate in every row")])
     speeds, start, stop = np.array(complete).T
-    return speeds, start, stop
+    total = np.vstack([np.zeros(4), np.cumsum(np.column_stack([rates, measured]), axis=0)])
+    summed, length = _at(total, stop) - _at(total, start), stop - start
+    mostly = summed[:, 3] > MOST * length
+    return WholeTurns(
+        rates=speeds[mostly],
+        means=summed[mostly, :3] / length[mostly, None],
+        times=row * (start + stop)[mostly] / 2,
+        rows=summed[mostly, 3],
+    )
 
 
 def _at(total: Array, place: Array) -> Array:
-    """The running sum (R + 1, 3), rad/s, at fractions of rows (T,)."""
+    """The running sums (R + 1, 4) at fractions of rows (T,)."""
     order = np.arange(len(total))
     return np.stack([np.interp(place, order, column) for column in total.T], axis=1)
 

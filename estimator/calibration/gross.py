@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from estimator.applied_vector import EARTH_RATE, STANDARD_GRAVITY
-from estimator.calibration.gross_choice import GrossChoice, chosen
+from estimator.calibration.gross_choice import GrossChoice, chosen, stuck_across
 from estimator.calibration.gross_linear import harmonics, live, nothing_predicted, regression, sticks_out
 from estimator.calibration.gross_slips import stuck
 from estimator.on_demand import function_on_demand
@@ -53,18 +53,16 @@ def on_stand(session: CalibrationSession, basis: Array) -> CalibrationSession:
     return with_set_aside(session, chosen(session, predicted))
 
 
-def on_table(session: CalibrationSession, azimuth: Array, turning: Array) -> CalibrationSession:
-    """A session on a rate table without its gross readings in the rows ``turning`` (R,) bool of whole turns, at
-    ``azimuth`` (R,) rad: each gyro reads its bias, a part of the table's rate and of the Earth's level rotation."""
+def on_table(session: CalibrationSession, azimuth: Array) -> CalibrationSession:
+    """A session on a rate table, at ``azimuth`` (R,) rad, without its gross readings: each gyro reads its bias, a part
+    of the table's rate and of the Earth's level rotation."""
     assert session.turn_rate is not None
-    u, errors = session.readings[turning], stated(session)[turning]
-    level = (np.sin(azimuth), np.cos(azimuth))
-    basis = live(np.column_stack([np.ones(len(azimuth)), session.turn_rate, *level])[turning])
-    if not (sticks_out(basis, u, errors) | stuck(u).any(axis=0)).any():
+    u, errors = session.readings, stated(session)
+    still = stuck_across(u, session.turn_rate)
+    basis = live(np.column_stack([np.ones(len(u)), session.turn_rate, np.sin(azimuth), np.cos(azimuth)]))
+    if not (sticks_out(basis, u, errors) | still.any(axis=0)).any():
         return session
-    predicted, told = nothing_predicted(session.readings), regression(basis, u, errors, stuck(u))
-    predicted.value[turning], predicted.sigma[turning], predicted.t[turning] = told.value, told.sigma, told.t
-    return with_set_aside(session, chosen(session, predicted))
+    return with_set_aside(session, chosen(session, regression(basis, u, errors, still)))
 
 
 def in_orientations(session: CalibrationSession) -> CalibrationSession:

@@ -71,7 +71,7 @@ def chosen(
     shown = shown_by_rows(session, predicted)
     far = (apart(np.abs(np.where(held, 0.0, predicted.t))) | held) & ~cut
     if session.programme == RATE_TABLE:
-        far &= ~shown
+        far &= held | ~(shown | reaching(session, far, predicted))
     slips = {(int(j), int(i)): slip_of(session, predicted, int(j), int(i)) for j, i in np.argwhere(far)}
     plain = np.zeros(far.shape, dtype=bool)
     for place, slip in slips.items():
@@ -132,6 +132,16 @@ def stretches(readings: Array, equal: Array, i: int) -> list[tuple[int, int]]:
     return [(a, b) for a, b in pairwise(edges) if equal[a, i]]
 
 
+def stuck_across(readings: Array, rate: Array) -> Array:
+    """(R, m) bool: stretches of one reading, of readings (R, m), over which the ``rate`` (R,) changes: at one rate
+    whole counts may be equal from the first row to the last."""
+    equal, found = stuck(readings), np.zeros(readings.shape, dtype=bool)
+    for i in np.flatnonzero(equal.any(axis=0)).tolist():
+        for first, stop in stretches(readings, equal, i):
+            found[first:stop, i] = np.ptp(rate[first:stop]) > 0
+    return found
+
+
 def repeated(session: CalibrationSession, far: Array) -> Array:
     """(R,) bool: rows that repeat the row before in every channel, although some of them are ``far`` (R, m) bool from
     what they should be: the block was not turned, or the row was written twice."""
@@ -190,12 +200,29 @@ def lasting(session: CalibrationSession, far: Array, predicted: Predicted) -> Ar
     ends[[0, R]] = True
     if session.flipped is not None:
         ends[1:-1] = np.diff(session.flipped)
-    if session.turn_rate is not None:
-        ends[1:-1] = np.diff(session.turn_rate) != 0
     side, found = np.where(far, np.sign(predicted.t), 0.0), np.zeros(far.shape, dtype=bool)
     for i in range(m):
         steps = np.abs(np.diff(np.log(np.abs(np.where(far[:, i], predicted.t[:, i], 1.0)))))
         edges = np.flatnonzero(ends | np.r_[True, (np.diff(side[:, i]) != 0) | (steps > np.log(APART)), True])
         for first, stop in pairwise(edges.tolist()):
             found[first:stop, i] = side[first, i] != 0 and stop - first > 1 and bool(ends[first] or ends[stop])
+    return found
+
+
+def reaching(session: CalibrationSession, far: Array, predicted: Predicted) -> Array:
+    """(R, m) bool: readings off from a change of the table's rate on, or up to one, between what both rates give: the
+    table takes time to reach its rate, and is taken to stand before the first row and after the last."""
+    assert session.turn_rate is not None
+    u, found, R = session.readings, np.zeros(far.shape, dtype=bool), len(far)
+    standing = np.array([s.nominal_offset or 0.0 for s in session.sensors])
+    level, spread = np.vstack([standing, predicted.value, standing]), BESIDE * predicted.sigma
+    for change in np.flatnonzero(np.r_[True, np.diff(session.turn_rate) != 0, True]).tolist():
+        low, high = np.minimum(level[change], level[change + 1]), np.maximum(level[change], level[change + 1])
+        for rows in (range(change, R), range(change - 1, -1, -1)):
+            goes_on = np.ones(far.shape[1], dtype=bool)
+            for j in rows:
+                goes_on &= far[j] & (u[j] >= low - spread[j]) & (u[j] <= high + spread[j])
+                if not goes_on.any():
+                    break
+                found[j] |= goes_on
     return found

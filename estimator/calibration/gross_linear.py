@@ -35,6 +35,9 @@ HALF = 0.6745
 EXACT = 1e-9
 """Least scatter relative to the range of readings: simulated ones may have none."""
 
+DIGITS, WRITTEN = 9, 0.9
+"""Decimals to which readings may be rounded, and part of them that shows it: a wrong one may have more."""
+
 TAKEN = 1e-6
 """Part of a reading's variance below which the fit leaves none of it to judge by."""
 
@@ -124,7 +127,7 @@ def of_one(basis: Array, y: Array, stated: Array, free: Array) -> tuple[Array, A
     known = bool(np.isfinite(stated).all() and (stated > 0).all())
     weight = 1.0 / stated if known else np.ones(len(y))
     design, z = basis * weight[:, None], y * weight
-    floor = 1.0 if known else max(EXACT * float(np.ptp(y)), np.finfo(float).tiny)
+    floor = 1.0 if known else max(EXACT * float(np.ptp(y)), rounding(y), np.finfo(float).tiny)
     rank = np.linalg.matrix_rank(design[free], rtol=VANISHES) if free.any() else 0
     if rank < design.shape[1] or free.sum() - rank < FREEDOM:
         return nothing
@@ -144,6 +147,15 @@ def of_one(basis: Array, y: Array, stated: Array, free: Array) -> tuple[Array, A
             break
         agrees = now
     return value / weight, sigma / weight
+
+
+def rounding(y: Array) -> float:
+    """One sigma of the rounding of readings y (n,) to whole counts or to decimals; 0 where they are not rounded."""
+    for digits in range(DIGITS + 1):
+        scaled = y * 10.0**digits
+        if np.mean(np.abs(scaled - np.round(scaled)) <= EXACT * np.abs(scaled)) >= WRITTEN:
+            return float(10.0**-digits / np.sqrt(12))
+    return 0.0
 
 
 def deletion(design: Array, z: Array, agrees: Array, floor: float) -> tuple[Array, Array] | None:

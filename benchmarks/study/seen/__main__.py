@@ -23,7 +23,7 @@ INTRODUCTION = (
     "Faults that careful people see at a glance are hidden in files and sessions by generators that share no code with "
     "the estimator, and what comes out is counted: found, named, refused, or taken for sound. Intervals: 95 %."
 )
-BEGIN, END = "<!-- why missed -->", "<!-- told -->"
+BEGIN, END = "<!-- why missed -->", "<!-- end of why missed -->"
 WHY = re.compile(f"{BEGIN}.*?{END}", re.DOTALL)
 
 

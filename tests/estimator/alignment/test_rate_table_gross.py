@@ -15,15 +15,16 @@ RATES = np.repeat([0.3, 0.0, -0.3, 0.6, -0.6], [900, 50, 900, 500, 500])
 """rad/s, of rows of 0.1 s."""
 
 
-def table(rng: np.random.Generator, m: int = 4, per_rate: float = 1e4) -> CalibrationSession:
-    """Gyros in a cone, each with its own scale factor, bias and axis, on an upright table: written down by hand."""
+def table(rng: np.random.Generator, m: int = 4, per_rate: float = 1e4, off: float = 1e-6) -> CalibrationSession:
+    """Gyros in a cone on an upright table, written down by hand: each has a bias, and a scale factor and an axis that
+    are ``off`` by that much, so little that the weights of the gyros in the reduced block do not matter."""
     around = 2 * np.pi * np.arange(m) / m
     nominal = np.column_stack([np.sin(0.9) * np.cos(around), np.sin(0.9) * np.sin(around), np.full(m, np.cos(0.9))])
-    axes = nominal + 1e-4 * rng.standard_normal((m, 3))
+    axes = nominal + off * rng.standard_normal((m, 3))
     azimuth = ROW * (np.cumsum(RATES) - RATES / 2)
     level, up = EARTH_RATE * np.cos(LATITUDE), EARTH_RATE * np.sin(LATITUDE)
     rate = np.column_stack([level * np.cos(azimuth), -level * np.sin(azimuth), RATES + up])
-    felt = rate @ axes.T * (1 + 1e-4 * rng.standard_normal(m)) + 1e-5 * rng.standard_normal(m)
+    felt = rate @ axes.T * (1 + off * rng.standard_normal(m)) + 1e-5 * rng.standard_normal(m)
     readings = per_rate * (felt + NOISE * rng.standard_normal(felt.shape))
     return CalibrationSession(
         unit="T",
@@ -63,7 +64,30 @@ def test_one_gross_reading_is_named_and_moves_nothing(m: int, slip: str) -> None
 
 
 def test_nothing_is_named_in_a_sound_session() -> None:
-    assert sum(bool(rate_table(table(np.random.default_rng(seed), 3 + seed % 4)).set_aside) for seed in range(40)) == 0
+    assert (
+        sum(
+            bool(rate_table(table(np.random.default_rng(seed), 3 + seed % 4, off=1e-3)).set_aside) for seed in range(40)
+        )
+        == 0
+    )
+
+
+@pytest.mark.parametrize("noises", [2.0, 25.0])
+def test_whole_counts_coarser_than_the_noise_are_not_stuck(noises: float) -> None:
+    """At one rate every reading may be the same count."""
+    for seed in range(8):
+        rng = np.random.default_rng(seed)
+        fine = table(rng, 3 + seed % 4)
+        count = noises * NOISE * 1e4
+        sound = replace(
+            fine,
+            readings=np.round(fine.readings / count),
+            sensors=tuple(replace(s, nominal_scale=s.nominal_scale / count) for s in fine.sensors),
+        )
+        assert rate_table(sound).set_aside == ()
+        row, size = int(rng.integers(850)), rng.choice([-1, 1]) * rng.integers(8, 10000)
+        (aside,) = rate_table(wrong(sound, np.array([row]), sound.readings[row, 1] + size)).set_aside
+        assert (aside.row, aside.sensor) == (row + 1, "G2")
 
 
 def test_a_tenth_of_the_readings_of_one_gyro_may_be_wrong() -> None:
@@ -73,6 +97,38 @@ def test_a_tenth_of_the_readings_of_one_gyro_may_be_wrong() -> None:
     found, plain = rate_table(wrong(sound, rows, -9e4)), rate_table(sound)
     assert {aside.sensor for aside in found.set_aside} == {"G2"}
     assert (np.abs(found.estimate - plain.estimate) < 2 * np.sqrt(np.diag(plain.covariance))).all()
+
+
+def test_turns_in_which_a_gyro_stood_still_measure_nothing() -> None:
+    """Stuck at the value of one rate until the end: the turns before decide, and sigma grows with what is lost."""
+    outside = 0
+    for seed in range(10):
+        sound = table(np.random.default_rng(seed), 5)
+        found, plain = rate_table(wrong(sound, np.arange(1900, len(RATES)), sound.readings[1899, 1])), rate_table(sound)
+        (aside,) = found.set_aside
+        assert (aside.sensor, aside.slip, aside.last_row) == ("G2", "stuck", len(RATES))
+        assert found.turns < plain.turns
+        outside += int((np.abs(found.estimate - plain.estimate) > 4 * np.sqrt(np.diag(found.covariance))).sum())
+    assert outside == 0
+
+
+@pytest.mark.parametrize("upright", [False, True])
+def test_a_table_that_takes_time_to_reach_its_rate_is_no_sensors_fault(upright: bool) -> None:
+    """Of a block with one gyro along the turn axis nobody else shows it."""
+    sound = table(np.random.default_rng(6), 4)
+    sensors = tuple(replace(s, nominal_axis=np.eye(3)[i % 3]) if upright else s for i, s in enumerate(sound.sensors))[
+        : 3 if upright else 4
+    ]
+    along = np.array([s.nominal_axis[2] for s in sensors])
+    rising = np.zeros(len(RATES))
+    for first in (0, 950, 1850, 2350):
+        rising[first : first + 5] = -RATES[first] * np.array([0.9, 0.7, 0.5, 0.3, 0.1])
+    noise = NOISE * np.random.default_rng(7).standard_normal((len(RATES), len(along)))
+    readings = 1e4 * ((RATES + rising)[:, None] * along + noise)
+    given = replace(
+        sound, sensors=sensors, readings=readings, standard_errors=np.full(readings.shape, np.nan), site=Site()
+    )
+    assert rate_table(given).set_aside == ()
 
 
 def test_a_row_in_which_the_table_stumbles_is_no_sensors_fault() -> None:
