@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 from service.fleet.tallies_store import Tallies
+from service.judging.usable_reading import settle_uses
 from service.settings import Settings
 from service.storage import Storage
 from service.storage.database import Database
@@ -12,8 +13,13 @@ from service.storage.waits import Waits, waits_of
 
 
 def settle(store: Store) -> None:
-    """Counts of the fleet are brought in line."""
-    Tallies(store).settle()
+    """Brings the counts of the fleet and the uses of units in line."""
+    tallies = Tallies(store)
+    units = tallies.touched()
+    if units:
+        store.session.flush()
+        tallies.settle(units)
+        settle_uses(store, units)
 
 
 def open_database(url: str, waits: Waits | None = None) -> Database:

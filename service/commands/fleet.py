@@ -20,7 +20,7 @@ from service.commands.console import DEFAULT_SERVER, AsJson, AsLines, ListOutput
 from service.commands.speech import FAILED, output_language, translated
 from service.commands.upload import coloured
 from service.flags.records import FlagState
-from service.judging.use import Use
+from service.fleet.use import Use
 from service.kit.measures import deviation_measure, measured, number
 from service.languages.language import Language
 from service.sessions.decision import Verdict

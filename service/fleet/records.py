@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
 
+from service.fleet.use import Use
 from service.groups.records import FoundTogether
 from service.kit.listing import ListQuery
 from service.sessions.decision import Verdict
@@ -14,6 +15,8 @@ from service.stands.records import StandCondition
 class Order(StrEnum):
     """What units are listed by; serial numbers order those that are alike."""
 
+    USE = "use"
+    """Those that may not be used first, then by condition; what falls due moves within an hour."""
     CONDITION = "condition"
     """Worst first, least margin to tolerance first."""
     DUE = "due"
@@ -25,9 +28,18 @@ class Order(StrEnum):
 
 
 @dataclass(frozen=True)
+class UseAt:
+    """Units that have this answer at a time."""
+
+    use: Use
+    at: datetime
+
+
+@dataclass(frozen=True)
 class FleetQuery(ListQuery):
     """Which units are wanted, and after or before which serial number."""
 
+    use: UseAt | None = None
     verdict: Verdict | None = None
     text: str | None = None
     """Part of the serial number or of the type's name, small and capital letters alike."""
@@ -53,7 +65,7 @@ class FleetQuery(ListQuery):
     """Whether the unit is retired; None where either will do."""
     unfit: bool = False
     """Only units that somebody must act on: unfit, probably unfit, or undecided."""
-    order: Order = Order.CONDITION
+    order: Order = Order.USE
 
 
 @dataclass(frozen=True)
@@ -112,4 +124,4 @@ class Announced:
     found: tuple[FoundTogether, ...]
     """What sessions show together: of stands before types before units."""
     groups: int
-    """How many groups show something, those that are not named too."""
+    """Number of groups that show something, those that are not named too."""

@@ -1,6 +1,7 @@
 """All units at a glance: one short row a unit, rewritten when a session of it is stored."""
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import Any
@@ -26,7 +27,8 @@ from service.errors import NotFoundError
 from service.flags.tables import FlagRow
 from service.fleet.condition import FleetCondition, UnitKnown, UnitSummary
 from service.fleet.records import UNCALIBRATED, FleetChoices, FleetQuery, Tally
-from service.fleet.tables import ConditionRow, FleetTallyRow
+from service.fleet.tables import ConditionRow, FleetTallyRow, UseRow
+from service.fleet.use import Use
 from service.fleet.wanted_store import UNITS
 from service.kit.moments import local
 from service.models.records import Scope
@@ -158,6 +160,15 @@ class Fleet(Queries):
         row = self._session.execute(_summaries().where(UnitRow.serial == serial)).one_or_none()
         return None if row is None else _summary(row)
 
+    def by_keys(self, units: Collection[int]) -> dict[int, tuple[UnitSummary, bool]]:
+        """Units by their keys, in the order of these, and whether the fleet lists them."""
+        rows = self._session.execute(_summaries().where(UnitRow.id.in_(units)).order_by(UnitRow.id))
+        found = {row[0].id: (_summary(row), row[0].registered_at) for row in rows}
+        return {
+            unit: (summary, summary.retired_at is None and (summary.last_session or entered) is not None)
+            for unit, (summary, entered) in found.items()
+        }
+
     def get(self, serial: str) -> UnitSummary:
         """One unit; NotFoundError where there is none of that serial number."""
         unit = self.unit(serial)
@@ -193,6 +204,24 @@ class Fleet(Queries):
         due = overdue_count(now).scalar_subquery()
         rows = self._session.execute(_tallies().add_columns(OPEN_OF_GROUPS, due)).all()
         return replace(_condition([row[:-1] for row in rows]), overdue=rows[0][-1] if rows else 0)
+
+    def uses_at(self, now: datetime) -> dict[str, Counter[Use]]:
+        """Number of units of each type, retired ones apart, that have each answer at a time."""
+        counted = (
+            select(UnitTypeRow.name, UseRow.answer, func.count())
+            .join(UnitRow, UnitRow.unit_type_id == UnitTypeRow.id)
+            .join(UseRow, UseRow.unit_id == UnitRow.id)
+            .where(UseRow.is_listed)
+            .group_by(UnitTypeRow.name, UseRow.answer)
+        )
+        found: dict[str, Counter[Use]] = {}
+        for unit_type, answer, count in self._session.execute(counted):
+            found.setdefault(unit_type, Counter())[Use(answer)] += count
+        overdue = counted.join(OutlookRow, OutlookRow.unit_id == UnitRow.id).where(OutlookRow.due < now)
+        for unit_type, answer, count in self._session.execute(overdue):
+            found[unit_type][Use(answer)] -= count
+            found[unit_type][Use.NO] += count
+        return found
 
     def tallies(self) -> tuple[Tally, ...]:
         """Units with an accepted session, by their verdict and by how much of their tolerance they use."""
@@ -263,6 +292,7 @@ def _listed(retired: bool | None) -> Select[int]:
         .outerjoin(SessionRow, SessionRow.id == ConditionRow.last_session)
         .outerjoin(DiagnosisRow, DiagnosisRow.session_id == ConditionRow.last_session)
         .outerjoin(OutlookRow, OutlookRow.unit_id == UnitRow.id)
+        .outerjoin(UseRow, UseRow.unit_id == UnitRow.id)
         .where(ConditionRow.unit_id.is_not(None) | UnitRow.registered_at.is_not(None))
     )
     return listed if retired is None else listed.where(UnitRow.retired_at.is_not(None) == retired)
@@ -292,6 +322,7 @@ def _summaries(units: FromClause = UnitRow.__table__) -> Summaries:
         .outerjoin(DiagnosisRow, DiagnosisRow.session_id == SessionRow.id)
         .outerjoin(DecisionRow, _WORST)
         .outerjoin(OutlookRow, OutlookRow.unit_id == UnitRow.id)
+        .outerjoin(UseRow, UseRow.unit_id == UnitRow.id)
         .outerjoin(_Outlook, (_Outlook.kind == WorkKind.OUTLOOK) & (_Outlook.key == UnitRow.serial))
         .outerjoin(_Derivation, (_Derivation.kind == WorkKind.DERIVATION) & (_Derivation.key == UnitRow.serial))
     )

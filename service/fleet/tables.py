@@ -2,7 +2,7 @@
 
 from datetime import datetime
 
-from sqlalchemy import ForeignKey, Index
+from sqlalchemy import ForeignKey, Index, String
 from sqlalchemy.orm import Mapped, mapped_column
 
 from service.storage.tables import Base
@@ -24,6 +24,20 @@ class ConditionRow(Base):
     flags: Mapped[int]
     last_at: Mapped[datetime | None] = mapped_column(index=True)
     stand_id: Mapped[int | None]
+
+
+class UseRow(Base):
+    """What a unit may be used for, rewritten with its records; that it fell due since is asked of the clock."""
+
+    __tablename__ = "uses"
+    unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"), primary_key=True, autoincrement=False)
+    answer: Mapped[str] = mapped_column(String(20), index=True)
+    rank: Mapped[int]
+    """Place of the answer in the order of attention, 0 first."""
+    is_listed: Mapped[bool]
+    """Whether the fleet counts it: in the register or measured, and not retired."""
+    use: Mapped[str]
+    """The answer in words, with what to do, in English."""
 
 
 class TalliedRow(Base):

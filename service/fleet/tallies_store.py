@@ -19,7 +19,7 @@ from service.fleet.tables import ConditionRow, FleetTallyRow, TalliedRow
 from service.sessions.states_store import IS_ACCEPTED
 from service.sessions.tables import SessionRow
 from service.stands.tables import StandTallyRow, StandUnitRow
-from service.storage.queries import TOUCHED, Queries
+from service.storage.queries import Queries
 from service.storage.tables import Base
 from service.units.tables import UnitRow
 
@@ -33,13 +33,10 @@ Stood = tuple[int, int]
 class Tallies(Queries):
     """How many units are in which condition, and how many sessions were measured where."""
 
-    def settle(self) -> None:
-        """Brings the counts in line with the touched units."""
-        units: set[int] = self._session.info.pop(TOUCHED, set())
-        if units:
-            self._session.flush()
-            self._settle_conditions(units)
-            self._settle_stands(units)
+    def settle(self, units: Collection[int]) -> None:
+        """Brings the counts in line with touched units."""
+        self._settle_conditions(units)
+        self._settle_stands(units)
 
     def _settle_conditions(self, units: Collection[int]) -> None:
         was, now = self._tallied_and_seen(units)

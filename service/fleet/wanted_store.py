@@ -1,10 +1,11 @@
 """Which units a list holds and in which order, and what the fleet page announces above it."""
 
-from sqlalchemy import ColumnElement, String, Subquery, case, cast, func, literal, select
+from sqlalchemy import ColumnElement, String, Subquery, case, cast, false, func, literal, select
 
 from service.diagnosis.tables import DiagnosisRow
-from service.fleet.records import Announced, FleetQuery, Order
-from service.fleet.tables import ConditionRow
+from service.fleet.records import Announced, FleetQuery, Order, UseAt
+from service.fleet.tables import ConditionRow, UseRow
+from service.fleet.use import Use
 from service.groups.records import FoundTogether, Group, Level
 from service.groups.tables import GroupDiagnosisRow
 from service.outlook.tables import OutlookRow
@@ -22,11 +23,22 @@ from service.types.tables import UnitTypeRow
 from service.units.tables import UnitRow
 
 BY_SERIAL = Key(UnitRow.serial, stays=True)
+
+
+def _has_use(wanted: UseAt) -> ColumnElement[bool]:
+    is_overdue = func.coalesce(OutlookRow.due < wanted.at, false())
+    if wanted.use is Use.NO:
+        return (UseRow.answer == Use.NO) | is_overdue
+    return (UseRow.answer == wanted.use) & ~is_overdue
+
+
+WORST_FIRST = (
+    Key(ConditionRow.severity, is_falling=True, nulls_first=False),
+    Key(ConditionRow.margin, nulls_first=False),
+)
 ORDERS = {
-    Order.CONDITION: (
-        Key(ConditionRow.severity, is_falling=True, nulls_first=False),
-        Key(ConditionRow.margin, nulls_first=False),
-    ),
+    Order.USE: (Key(UseRow.rank, nulls_first=True), *WORST_FIRST),
+    Order.CONDITION: WORST_FIRST,
     Order.DUE: (Key(OutlookRow.due, nulls_first=True),),
     Order.TYPE: (Key(UnitTypeRow.name),),
     Order.LAST: (Key(ConditionRow.last_at, nulls_first=True),),
@@ -55,6 +67,7 @@ UNITS: Listing[FleetQuery] = Listing(
     name=UnitRow.serial,
     keys=lambda wanted: (*ORDERS[wanted.order], BY_SERIAL) if wanted.order in ORDERS else (Key(UnitRow.serial),),
     conditions={
+        "use": _has_use,
         "verdict": lambda verdict: ConditionRow.severity == verdict.severity,
         "reserved": _is_reserved,
         "reference": lambda is_so: SessionRow.is_reference.is_(is_so),

@@ -10,7 +10,7 @@ from pydantic import computed_field
 from estimator.message import joined
 from service.flags.records import Concern, Matter
 from service.fleet.condition import UnitSummary
-from service.judging.use import Use
+from service.fleet.use import Use
 from service.judging.words import AGAIN, verdict_in_words
 from service.kit.answer import Hidden, answer
 from service.outlook.records import Action
@@ -208,6 +208,11 @@ class Usable:
     """When it was asked, UTC."""
     due_reason: Hidden[str] = ""
     """The rule that set the date, or why there is none."""
+
+    @property
+    def objection(self) -> str:
+        """The gravest thing that speaks against it, or that must be known; empty where there is none."""
+        return next(iter((*self.reasons, *self.reservations)), "")
 
     @property
     def is_overdue(self) -> bool:

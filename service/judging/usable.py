@@ -10,10 +10,10 @@ from datetime import datetime, timedelta
 
 from estimator.message import joined, say
 from service.flags.records import Matter
+from service.fleet.use import Use, in_words
 from service.judging import usable_words as words
 from service.judging.fault_words import remedy_in
 from service.judging.records import Usable, UseFacts
-from service.judging.use import Use, in_words
 from service.kit.failure import session_failed, unit_failed
 from service.kit.measures import day_of
 from service.outlook.records import Action
@@ -121,11 +121,9 @@ def _unfit(facts: UseFacts, _: datetime) -> Iterator[Objection]:
     if unit.last_at is None or not _is_measured(facts) or unit.is_reference:
         return
     if unit.verdict in UNFIT:
-        yield Objection(
-            words.on(words.NOT_FIT, unit.last_at, reason=unit.reason), remedy_in(unit.reason) or words.ADJUST
-        )
+        yield Objection(unit.reason, remedy_in(unit.reason) or words.ADJUST)
     elif unit.verdict is Verdict.UNDECIDABLE:
-        yield Objection(words.on(words.UNDECIDED, unit.last_at, reason=unit.reason), words.REPEAT)
+        yield Objection(unit.reason, words.REPEAT)
 
 
 def _uncertain(facts: UseFacts, _: datetime) -> Iterator[Objection]:

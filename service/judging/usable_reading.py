@@ -1,17 +1,24 @@
 """What units may be used for, by their serial numbers."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from datetime import datetime
 
+from service.flags.records import Matter
 from service.fleet.condition import UnitSummary
 from service.fleet.store import Fleet
-from service.judging.records import Usable
+from service.judging.records import Usable, UseFacts
 from service.judging.usable import usable
 from service.judging.usable_store import UseStore
+from service.outlook.changes import END_OF_TIME
+from service.storage import Storage
 from service.storage.queries import Store
 
 AT_A_TIME = 1000
 """Units that one question to the database names."""
+
+
+AT_ONCE = 100
+"""Units whose use is settled in one transaction."""
 
 
 def usable_of(store: Store, units: Sequence[UnitSummary], now: datetime) -> dict[str, Usable]:
@@ -21,6 +28,31 @@ def usable_of(store: Store, units: Sequence[UnitSummary], now: datetime) -> dict
         facts = UseStore(store).facts(units[start : start + AT_A_TIME], now)
         found |= {unit_facts.unit.serial: usable(unit_facts, now) for unit_facts in facts}
     return found
+
+
+def settle_uses(store: Store, units: Collection[int]) -> None:
+    """Stores what units may be used for; where no flag says that a unit is overdue, until it is due."""
+    found, known = UseStore(store), Fleet(store).by_keys(units)
+    facts = found.facts([summary for summary, _ in known.values()], END_OF_TIME)
+    found.put(
+        {
+            key: (usable(of_unit, _moment(of_unit)), is_listed)
+            for (key, (_, is_listed)), of_unit in zip(known.items(), facts, strict=True)
+        }
+    )
+
+
+def _moment(known: UseFacts) -> datetime:
+    is_overdue = any(flag.matter is Matter.OVERDUE for flag in known.flags)
+    return END_OF_TIME if is_overdue or known.unit.due is None else known.unit.due
+
+
+def settle_all(storage: Storage) -> None:
+    """Stores it of every unit, a few in each transaction: after an upgrade, and against anything forgotten."""
+    after: int | None = 0
+    while after is not None:
+        with storage.database.writing() as store:
+            after = UseStore(store).touch_next(after, AT_ONCE)
 
 
 def usable_unit(store: Store, serial: str, now: datetime) -> Usable:

@@ -1,6 +1,6 @@
 """Everything that decides what units may be used for, in one query for however many units."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from datetime import datetime
 from typing import Any
 
@@ -11,8 +11,9 @@ from estimator.session import CALIBRATIONS
 from service.flags.records import Matter
 from service.flags.tables import FlagRow
 from service.fleet.condition import UnitSummary
-from service.fleet.tables import ConditionRow
-from service.judging.records import OpenFlag, UseFacts
+from service.fleet.tables import ConditionRow, UseRow
+from service.fleet.use import RANKS
+from service.judging.records import OpenFlag, Usable, UseFacts
 from service.judging.reference import left_uncertain
 from service.kit.measures import COVERAGE
 from service.models.records import Scope
@@ -51,6 +52,25 @@ class UseStore(Queries):
         for row in self._session.execute(query):
             rows.setdefault(row[0], []).append(row)
         return tuple(_record(unit, rows[unit.serial]) for unit in units)
+
+    def touch_next(self, after: int, limit: int) -> int | None:
+        """Marks the units that follow a key, so that they are settled; returns the last key, None after the last."""
+        found = tuple(
+            self._session.scalars(select(UnitRow.id).where(UnitRow.id > after).order_by(UnitRow.id).limit(limit))
+        )
+        self.touch(*found)
+        return found[-1] if found else None
+
+    def put(self, uses: Mapping[int, tuple[Usable, bool]]) -> None:
+        """Rewrites what units may be used for, by their keys, and whether the fleet lists them."""
+        rows = [
+            {"unit_id": unit, "answer": use.answer, "rank": RANKS[use.answer], "is_listed": listed, "use": str(use.use)}
+            for unit, (use, listed) in uses.items()
+        ]
+        if rows:
+            new = self._upsert(UseRow)
+            kept = {name: getattr(new.excluded, name) for name in ("answer", "rank", "is_listed", "use")}
+            self._session.execute(new.on_conflict_do_update(index_elements=["unit_id"], set_=kept), rows)
 
 
 def _gravity(flag: OpenFlag) -> tuple[int, int, str]:

@@ -19,12 +19,10 @@ TOO_COARSE = (
 RETIRED = "It is retired since {day}."
 NOTHING_JUDGED = "None of its sessions counts as a calibration: calibrate the unit."
 SINCE_SERVICE = "Nothing was measured since the service of {day}: calibrate the unit, which sets its new reference."
-NOT_FIT = "Not fit by its session of {day}: {reason}"
-UNDECIDED = "Undecided by its session of {day}: {reason}"
 OVERDUE = "Its calibration was due on {due}: calibrate it. {reason}"
 NO_DUE = "It is not known when its calibration is due: calibrate it."
 FUTURE = "Its session is dated {day}, in the future: correct the date."
-FLAGGED = "Flag {id} is open: {summary}"
+FLAGGED = "Flag {id} is still open: {summary}"
 CLOSE = "Within tolerance, but by less than the uncertainty of the measurement: {reason}"
 WAITS = "The session of {day} waits for an engineer and does not count yet: accept it, correct it or withdraw it."
 DATES_PENDING = "Its dates are being computed with its latest records: ask again in a few seconds."
@@ -46,7 +44,7 @@ ASK_AGAIN = "ask again in a few seconds"
 ADMINISTRATOR = "tell the administrator"
 ENGINEER = "accept, correct or withdraw the session that waits"
 CERTIFY = "have the stand calibrated"
-SETTLE = "settle flag {id}"
+SETTLE = "have an engineer resolve flag {id}"
 
 
 def flagged(flag: OpenFlag) -> str:

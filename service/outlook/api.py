@@ -17,7 +17,6 @@ from service.fleet.records import FleetQuery, Order
 from service.fleet.store import Fleet
 from service.judging.records import Usable
 from service.judging.usable_reading import usable_of
-from service.judging.use import Use
 from service.outlook.changes import END_OF_TIME
 from service.web.dependencies import Now, Reading
 from service.web.problem_document import errors
@@ -105,13 +104,12 @@ def read_due_dates(request: Request, store: Reading, now: Now) -> Response:
 
 
 def _due_day(use: Usable, unit: UnitSummary, base: str) -> DueDay:
-    """The rule that set the date, after what must be known or done first."""
+    """The rule that set the date, after what the unit may be used for."""
     assert use.until is not None
-    first = "" if use.answer is Use.YES else f"{use.use}. "
     return DueDay(
         unit=unit.serial,
         day=use.until.date(),
         summary=f"{unit.serial}: calibration {'overdue' if use.is_overdue else 'due'}",
-        description=f"{first}{use.due_reason}",
+        description=f"{use.use}. {use.due_reason}",
         url=f"{base}units/{quote(unit.serial)}",
     )

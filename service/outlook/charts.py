@@ -92,7 +92,7 @@ def tracks_of(history: Iterable[HistoryPoint], services: Sequence[Service]) -> t
 
 
 def _group(by_sensor: dict[str, list[HistoryPoint]], services: Sequence[Service]) -> tuple[ParameterCourse, ...]:
-    changes = {name: changes_of(by_sensor[name], services) for name in sorted(by_sensor, key=_natural)}
+    changes = {name: changes_of(by_sensor[name], services) for name in sorted(by_sensor, key=natural)}
     first = next(iter(changes.values()))[0].point
     largest = max(change.largest for course in changes.values() for change in course)
     unit = deviation_measure(first.kind, first.parameter, largest)
@@ -103,8 +103,8 @@ def _group(by_sensor: dict[str, list[HistoryPoint]], services: Sequence[Service]
     )
 
 
-def _natural(name: str) -> tuple[str, int, str]:
-    """A2 comes before A10."""
+def natural(name: str) -> tuple[str, int, str]:
+    """Orders names of sensors: A2 comes before A10."""
     digits = "".join(c for c in name if c.isdigit())
     return name.rstrip("0123456789"), int(digits or 0), name
 

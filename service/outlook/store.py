@@ -182,13 +182,15 @@ class Outlooks(Queries):
 
     def put(self, unit: int, outlook: UnitOutlook) -> None:
         """Rewrites a unit's outlook."""
+        self.touch(unit)
         document, drawn = outlook_to_dicts(outlook)
         read = {"due": outlook.due, "reason": outlook.reason, "rates": [_rate(trend) for trend in outlook.trends]}
         self._session.merge(OutlookRow(unit_id=unit, document=document, drawn=drawn, **read))
         self._session.flush()
 
     def drop(self, unit: int) -> None:
-        """Of a unit without an accepted session there is no outlook."""
+        """Deletes the outlook of a unit without an accepted session."""
+        self.touch(unit)
         self._session.execute(delete(OutlookRow).where(OutlookRow.unit_id == unit))
         self._session.execute(delete(HistoryRow).where(HistoryRow.unit_id == unit))
 

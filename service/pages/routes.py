@@ -1,5 +1,6 @@
 """The addresses of the pages: each route reads or asks a flow, and renders a frozen context."""
 
+from collections import Counter
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Request
@@ -9,7 +10,9 @@ from estimator.allan.results import TERMS
 from service.diagnosis.store import Diagnoses
 from service.errors import NotFoundError
 from service.flags.store import FlagQuery, Flags
+from service.fleet.condition import UnitSummary
 from service.fleet.store import Fleet
+from service.fleet.use import Use
 from service.fleet.wanted_store import Announcements
 from service.groups.records import Level
 from service.groups.sections import MOST_FOUND, found_line, group_section
@@ -43,8 +46,10 @@ from service.records.register import retired_in_words
 from service.sessions.calibrations_store import Calibrations
 from service.sessions.doubt import Remedies
 from service.sessions.history_store import History, HistoryQuery
+from service.sessions.records import HistoryPoint
 from service.sessions.states import RecordState
 from service.sessions.store import Sessions
+from service.storage.queries import Store
 from service.units.remarks_store import SaidOf
 from service.units.store import Register, Units
 from service.uploads.correct import remedies_of
@@ -80,6 +85,7 @@ def show_fleet(request: Request, store: ReadingFleet, now: Now, view: Annotated[
         units,
         usable_of(store, units, now),
         view,
+        used=sum(Fleet(store).uses_at(now).values(), Counter[Use]()),
         overdue=condition.overdue,
         together=found_line(announced),
         unlike=fleet_standouts(store, MOST_STANDOUTS),
@@ -90,6 +96,14 @@ def show_fleet(request: Request, store: ReadingFleet, now: Now, view: Annotated[
         follow=SOONEST if being_filled else None,
     )
     return render(request, "fleet.html", shown)
+
+
+def _worst_of(store: Store, unit: UnitSummary) -> tuple[HistoryPoint, ...]:
+    """The history of the parameter that a unit's verdict hangs on."""
+    if unit.worst_sensor is None or unit.worst_parameter is None:
+        return ()
+    wanted = HistoryQuery(parameter=unit.worst_parameter, sensor=unit.worst_sensor)
+    return recent_history(store, unit.serial, HISTORY_LIMIT, wanted)
 
 
 @router.get("/units/{serial:path}/parameters/{name}")
@@ -125,6 +139,7 @@ def show_unit(
             usable_of(store, (report.summary,), now)[serial],
             raw=raw,
             noise=recent_history(store, serial, HISTORY_LIMIT, HistoryQuery(noise=True)) if is_heard else (),
+            worst=_worst_of(store, report.summary),
             flags=Flags(store).page(FlagQuery(serial, limit=FLAG_LIMIT)),
             notes=report.said.notes,
             pair=found_and_left(store, report.unit_type, report.sessions, settings.coverage_factor),

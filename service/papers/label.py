@@ -8,9 +8,9 @@ import segno
 
 from estimator.message import capitalised, say
 from service.fleet.condition import UnitSummary
+from service.fleet.use import Use, in_words
 from service.judging.records import Usable
 from service.judging.usable_words import ASK_AGAIN
-from service.judging.use import Use, in_words
 from service.kit.measures import HARD, day_of
 from service.languages.language import Language
 from service.papers.typeset import typeset, typeset_svg

@@ -6,10 +6,10 @@ from datetime import datetime
 
 from service.fleet.condition import UnitSummary
 from service.fleet.store import Fleet
+from service.fleet.use import Use
 from service.judging.records import Usable
 from service.judging.usable_reading import usable_of
 from service.judging.usable_words import next_in_words
-from service.judging.use import Use
 from service.kit.measures import THIN, day_of, number
 from service.languages.language import Language
 from service.papers.certificate.facts import Fact

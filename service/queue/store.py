@@ -25,7 +25,9 @@ from sqlalchemy.orm import InstrumentedAttribute, aliased
 from service.kit.failure import AT_FAULT
 from service.queue.records import Waiting, WorkKind, WorkState
 from service.queue.tables import SINGLE, WorkRow
+from service.sessions.tables import SessionRow
 from service.storage.queries import Queries, Store
+from service.units.tables import UnitRow
 
 RETRY_AT_ONCE: dict[str, Any] = {"state": WorkState.WAITING, "not_before": None, "attempts": 0, "failed": None}
 """Resets failed work, so that it is attempted at once."""
@@ -136,13 +138,22 @@ class WorkQueue(Queries):
 
     def record_failure(self, key: str, why: str) -> None:
         """Records why an attempt failed."""
+        self._touch(key)
         self._session.execute(self._of(key).values(failed=why))
 
     def give_up(self, key: str, why: str | None = None) -> None:
         """Gives up after the last attempt: attempted again on a new request, at the next start, or by an explicit
         retry."""
+        self._touch(key)
         reason = why or func.coalesce(WorkRow.failed, AT_FAULT)
         self._session.execute(self._of(key).values(state=WorkState.FAILED, lease_until=None, failed=reason))
+
+    def _touch(self, key: str) -> None:
+        """Marks the unit that the work is about: its use says that something failed."""
+        if self._kind is WorkKind.DIAGNOSIS:
+            self.touch(*self._session.scalars(select(SessionRow.unit_id).where(SessionRow.id == key)))
+        elif self._kind in (WorkKind.OUTLOOK, WorkKind.DERIVATION):
+            self.touch(*self._session.scalars(select(UnitRow.id).where(UnitRow.serial == key)))
 
     def add_failed(self, key: str, why: str, now: datetime) -> None:
         """Records the failure of work that is not claimed here."""

@@ -44,9 +44,10 @@ class States(Queries):
         return tuple(map(state_change, self._session.scalars(query.order_by(RecordStateRow.id))))
 
     def put_session(self, id: str, state: RecordState, superseded_by: str | None = None) -> None:
-        """Whether a session counts, and which one superseded it."""
+        """Stores whether a session counts, and which one superseded it."""
         values = {"state": state, "superseded_by": superseded_by}
-        self._session.execute(update(SessionRow).where(SessionRow.id == id).values(**values))
+        changed = update(SessionRow).where(SessionRow.id == id).values(**values).returning(SessionRow.unit_id)
+        self.touch(*self._session.scalars(changed))
         self._session.expire_all()
 
     def choose(self, unit: int, session: str, step: Step) -> None:

@@ -196,7 +196,9 @@ class StandCertificates(Queries):
 
     def add(self, new: StandCertificate, who: str, now: datetime, errors: Sequence[StandError] = ()) -> None:
         """Stores a certificate of a stand that is known, with the errors that its document states."""
-        values = {**vars(new), "stand_id": self._key(new.stand), "who": who, "recorded_at": now}
+        stand = self._key(new.stand)
+        self.touch(*self._session.scalars(select(ConditionRow.unit_id).where(ConditionRow.stand_id == stand)))
+        values = {**vars(new), "stand_id": stand, "who": who, "recorded_at": now}
         values["errors"] = {error.name: error.sigma for error in errors} or None
         del values["stand"]
         self._session.add(StandCertificateRow(**values))

@@ -50,8 +50,13 @@ class Queries:
             self._session.execute(self._upsert(table).on_conflict_do_nothing(), list(rows))
 
     def touch(self, *units: int) -> None:
-        """Marks units whose counts in the fleet may change in this transaction."""
+        """Marks units whose counts in the fleet and use may change in this transaction."""
         self._session.info.setdefault(TOUCHED, set()).update(units)
+
+    def touched(self) -> set[int]:
+        """Returns the units touched since the last call."""
+        units: set[int] = self._session.info.pop(TOUCHED, set())
+        return units
 
     def insert_many(self, table: type[Base], rows: Sequence[Mapping[str, Any]]) -> None:
         """Inserts rows in one statement, without an object for each."""

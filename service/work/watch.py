@@ -11,6 +11,7 @@ from service.groups.store import Groups
 from service.jobs.changes import drop_expired
 from service.jobs.store import Failures
 from service.judging.store import Derivations
+from service.judging.usable_reading import settle_all
 from service.kit.bell import Bell
 from service.kit.guard import Alone, Guard, kept, plainly
 from service.kit.metrics import Metrics
@@ -64,6 +65,8 @@ def watch_fleet(
 def look(storage: Storage, clock: Callable[[], datetime], metrics: Metrics) -> bool:
     """Checks the whole fleet and what dead processes left; whether all of it succeeded."""
     guard = Guard(metrics)
+    with guard.alone("uses", ""):
+        settle_all(storage)
     with guard.alone("outlooks", ""):
         update_outlooks(storage, clock(), guard.alone)
     with guard.alone("due dates", ""):

@@ -14,9 +14,9 @@ from tests.project.source import PACKAGES, Module, modules, statements
 
 SUBJECTS = (
     "errors", "settings", "languages", "kit", "client", "storage", "queue", "ingest", "sessions", "web", "units",
-    "types", "stands", "models", "diagnosis", "outlook", "groups", "fleet", "opening", "tables", "people",
-    "flags", "judging", "jobs", "records", "planning", "papers", "uploads", "work", "pages", "all_pages", "all_api",
-    "app", "demo", "commands", "cli",
+    "types", "stands", "models", "diagnosis", "outlook", "groups", "fleet", "tables", "people",
+    "flags", "judging", "opening", "jobs", "records", "planning", "papers", "uploads", "work", "pages", "all_pages",
+    "all_api", "app", "demo", "commands", "cli",
 )  # fmt: skip
 """The service's subjects, from the ground up: one imports only from those before it."""
 EDGE = re.compile(

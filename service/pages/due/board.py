@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from service.fleet.condition import UnitSummary
+from service.fleet.use import Use
 from service.judging.records import Usable
-from service.judging.use import Use
 from service.kit.answer import answer
 from service.kit.copying import copied
 from service.kit.measures import month_of

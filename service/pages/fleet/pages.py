@@ -1,27 +1,36 @@
-"""The fleet page: which units are fit, which are not, and which to look at first."""
+"""The fleet page: which units may be used, what must be done with the others, and which come first."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
-from estimator.message import joined, say_count
-from service.fleet.condition import ConditionCount, FleetCondition, ToleranceUsed, UnitSummary
+from estimator.message import capitalised, joined, say_count
+from service.fleet.condition import FleetCondition, ToleranceUsed, UnitSummary
 from service.fleet.records import FleetChoices
+from service.fleet.use import RANKS, WORDS, Use
 from service.groups.sections import FoundLine
 from service.judging.records import Usable
-from service.judging.use import Use
 from service.kit.copying import copied
 from service.outlook.rules.populations import Standout
-from service.pages.fleet.view import DUE, RETIRED, FleetView
-from service.sessions.doubt import Reservations
+from service.pages.fleet.view import DUE, RETIRED, USES, FleetView
 from service.sessions.states import Questioned
-from service.sessions.words.conditions import Condition, condition_of
 from service.stands.records import StandCondition
 from service.web.list_view import Shown
 
 MOST_STANDOUTS = 6
 """Lines above the list of units, so that the list stays in sight."""
 NO_CHOICES = FleetChoices()
+NO_UNITS: Mapping[Use, int] = dict.fromkeys(Use, 0)
+COUNTED = (Use.NO, Use.RESERVED, Use.YES)
+"""Answers that are counted even where no unit has them."""
+COUNT_WORDS = {
+    Use.NO: "must not be used",
+    Use.PENDING: "must not be used yet",
+    Use.RESERVED: "with reservation",
+    Use.YES: "may be used",
+}
+SHORT = {**WORDS, Use.RESERVED: "With reservation"}
+"""The answers where there is little room."""
 BAR_LIMIT = 150.0
 """The margin bar ends at one and a half tolerances, per cent."""
 
@@ -44,22 +53,21 @@ class FleetRow:
 
     serial: str
     unit_type: str
-    condition: Condition
-    reservations: Reservations
+    use: Use
+    word: str
+    """The answer alone: ``Do not use``."""
+    action: str
+    """What to do; empty where nothing is to be done."""
     reason: str
+    """Why, in one sentence; empty where nothing is to be done."""
     worst: str
     margin: Margin | None
     last_at: datetime | None
     last_session: str | None
     sessions: int
     simulated: bool
-    flags: str
-    """``2 flags``; empty where none is open."""
     due: datetime | None
     """Of the next calibration; None where something else must be done first."""
-    use: Use
-    said: str
-    """What it may be used for, and what to do."""
     overdue: bool
     where: str
     """Location and custodian; empty where neither is known."""
@@ -67,14 +75,22 @@ class FleetRow:
 
 
 @dataclass(frozen=True)
-class Tile:
-    """How many units are in one condition; a click shows only these."""
+class UseCount:
+    """Number of units with one answer; a click shows only these."""
 
-    condition: Condition
+    use: Use
+    words: str
+    """``9 must not be used``, the number first."""
     count: int
-    reserved: int
-    """Of how many of them the verdict has a reservation."""
     chosen: bool
+    url: str
+
+
+@dataclass(frozen=True)
+class FleetConcern:
+    """What concerns several units, in a few words, and where it is said in full."""
+
+    words: str
     url: str
 
 
@@ -83,15 +99,13 @@ class FleetPage:
     """Everything the fleet page shows."""
 
     view: FleetView
-    tiles: tuple[Tile, ...]
+    counts: tuple[UseCount, ...]
     rows: tuple[FleetRow, ...]
     total: int
     shown: Shown[UnitSummary]
     all_simulated: bool
     """Whether no session of any unit was measured."""
     simulated: int
-    flags: str
-    """How many are open on all units together, in words; empty where none is."""
     stands: tuple[StandCondition, ...]
     """That shift every unit measured on them, or did."""
     standouts: tuple[Standout, ...]
@@ -100,12 +114,13 @@ class FleetPage:
     """Sessions that wait for an engineer, the latest first."""
     together: FoundLine | None
     """What sessions together show that none shows alone; None where they show nothing."""
-    overdue: str
-    """How many units are overdue, in words; empty where none is."""
+    concerns: tuple[FleetConcern, ...]
     choices: FleetChoices
     """What the list can be narrowed to."""
     retired: Mapping[str, str]
     """What can be shown of retired units, in words."""
+    uses: Mapping[str, str]
+    """Choices of what units may be used for, in words."""
     dates: Mapping[str, str]
     """Choices of the next calibration's date, in words."""
     pending: str
@@ -130,6 +145,7 @@ def fleet_page(
     uses: Mapping[str, Usable],
     view: FleetView,
     *,
+    used: Mapping[Use, int] = NO_UNITS,
     overdue: int = 0,
     together: FoundLine | None = None,
     unlike: Sequence[Standout] = (),
@@ -139,36 +155,62 @@ def fleet_page(
     pending: str = "",
     follow: int | None = None,
 ) -> FleetPage:
-    """One page of units."""
+    """One page of units, and the number of all units by what they may be used for."""
     shown = Shown.of(view, units, lambda unit: unit.serial)
     return FleetPage(
         view=view,
-        tiles=tuple(_tile(counted, view) for counted in condition.counts),
+        counts=use_counts(used, view),
         rows=tuple(fleet_row(unit, uses[unit.serial]) for unit in shown.entries),
         total=condition.units,
         shown=shown,
         all_simulated=0 < condition.simulated == condition.units - condition.uncalibrated,
         simulated=condition.simulated,
-        flags=flags_in_words(condition.flags),
         stands=tuple(stands),
         standouts=tuple(unlike),
         questioned=tuple(questioned),
         together=together,
-        overdue=say_count("{n} unit overdue for calibration", "{n} units overdue for calibration", overdue)
-        if overdue
-        else "",
+        concerns=tuple(_concerns(overdue, stands, questioned, together, unlike)),
         choices=choices,
         dates=DUE,
         retired=RETIRED,
+        uses=USES,
         pending=pending,
         follow=follow,
     )
 
 
-def _tile(counted: ConditionCount, view: FleetView) -> Tile:
-    chosen = view.condition == counted.condition.key
-    url = view.first(condition="" if chosen else counted.condition.key)
-    return Tile(counted.condition, counted.count, counted.reserved, chosen, url)
+def _concerns(
+    overdue: int,
+    stands: Sequence[StandCondition],
+    questioned: Sequence[Questioned],
+    together: FoundLine | None,
+    unlike: Sequence[Standout],
+) -> Iterator[FleetConcern]:
+    if overdue:
+        yield FleetConcern(say_count("{n} is overdue", "{n} are overdue", overdue), "/?due=overdue&sort=due")
+    shifted = sum(stand.has_shifted for stand in stands)
+    if shifted:
+        yield FleetConcern(say_count("{n} stand has shifted", "{n} stands have shifted", shifted), "#stands")
+    if questioned:
+        words = say_count("{n} session waits for an engineer", "{n} sessions wait for an engineer", len(questioned))
+        yield FleetConcern(words, "#questioned")
+    if together:
+        groups = len(together.found) + together.more
+        yield FleetConcern(say_count("{n} common effect", "{n} common effects", groups), "#together")
+    if unlike:
+        yield FleetConcern(say_count("{n} unlike its type", "{n} unlike their type", len(unlike)), "#unlike")
+
+
+def use_counts(used: Mapping[Use, int], view: FleetView) -> tuple[UseCount, ...]:
+    """Units by what they may be used for, those that must not be used first."""
+    uses = (use for use in sorted(Use, key=RANKS.__getitem__) if used.get(use) or use in COUNTED)
+    return tuple(
+        UseCount(
+            use, COUNT_WORDS[use], used.get(use, 0), view.use == use,
+            view.first(use="" if view.use == use else use.value),
+        )
+        for use in uses
+    )  # fmt: skip
 
 
 def flags_in_words(count: int) -> str:
@@ -178,17 +220,16 @@ def flags_in_words(count: int) -> str:
 
 def fleet_row(unit: UnitSummary, usable: Usable) -> FleetRow:
     """One unit of a list."""
-    condition = condition_of(unit.verdict, is_reference=unit.is_reference)
     return copied(
         FleetRow,
         unit,
-        condition=condition,
+        use=usable.answer,
+        word=SHORT[usable.answer],
+        action=capitalised(usable.action),
+        reason=usable.objection,
         worst=joined(" ", filter(None, (unit.worst_sensor, unit.worst_parameter))),
         margin=None if unit.used is None else margin_of(unit.used),
-        flags=flags_in_words(unit.flags),
         due=usable.due,
-        use=usable.answer,
-        said=usable.use,
         overdue=usable.is_overdue,
         where=joined(", ", filter(None, (unit.location, unit.custodian))),
         retired=unit.retired_at is not None,

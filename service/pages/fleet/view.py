@@ -5,18 +5,17 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
-from service.fleet.records import FleetQuery, Order
-from service.sessions.decision import Verdict
-from service.sessions.words.conditions import NOT_MEASURED, REFERENCE, RESERVED
+from service.fleet.records import FleetQuery, Order, UseAt
+from service.fleet.use import WORDS, Use
 from service.web.list_view import Asked, ListView, Words, one_of
 
-DUE = {"overdue": "Overdue", "30": "Due within 30 days", "90": "Due within 90 days", "now": "Do not use, or repeat"}
+DUE = {"overdue": "Overdue", "30": "Due within 30 days", "90": "Due within 90 days"}
 """Choices of the next calibration's date, in words."""
 RETIRED = {"only": "Retired units only", "too": "Retired units too"}
 """What is shown of retired units, in words; none where nothing is asked."""
+USES = {use.value: word for use, word in WORDS.items()}
+"""Choices of what units may be used for, in words."""
 RETIRED_OF = {"": False, "only": True, "too": None}
-REFERENCES = {REFERENCE.key: True, Verdict.UNDECIDABLE.value: False}
-"""Conditions that tell whether the latest session is a reference."""
 
 
 class FleetView(ListView):
@@ -24,14 +23,14 @@ class FleetView(ListView):
 
     PATH = "/"
     ORDERS: ClassVar = {
-        Order.CONDITION.value: "by condition, least margin to tolerance first",
+        Order.USE.value: "by use, least margin to tolerance first",
         Order.DUE.value: "by next calibration",
         Order.SERIAL.value: "by serial number",
         Order.TYPE.value: "by type",
         Order.LAST.value: "by last session",
     }
     q: Words = ""
-    condition: Annotated[Asked, one_of({*Verdict, RESERVED.key, REFERENCE.key, NOT_MEASURED.key})] = ""
+    use: Annotated[Asked, one_of(set(Use))] = ""
     due: Annotated[Asked, one_of(DUE)] = ""
     type: Asked = ""
     stand: Asked = ""
@@ -39,7 +38,6 @@ class FleetView(ListView):
     location: Asked = ""
     custodian: Asked = ""
     retired: Annotated[Asked, one_of(RETIRED)] = ""
-    flagged: Asked = ""
     page: Annotated[int, Field(ge=1, le=1_000_000)] = 1
     """Its number, for people; what is read begins after a unit."""
 
@@ -47,20 +45,15 @@ class FleetView(ListView):
         """What the store is asked: one unit more than fit on the page, which says whether there is a next one."""
         until = {"overdue": now, "30": now + timedelta(days=30), "90": now + timedelta(days=90)}
         return FleetQuery(
-            verdict=Verdict(self.condition) if self.condition in set(Verdict) else None,
+            use=UseAt(Use(self.use), now) if self.use else None,
             text=self.q or None,
-            reserved=True if self.condition == RESERVED.key else None,
-            reference=REFERENCES.get(self.condition),
             due_before=until.get(self.due),
-            undated=self.due == "now",
             unit_type=self.type or None,
             stand=self.stand or None,
             lot=self.lot or None,
             location=self.location or None,
             custodian=self.custodian or None,
-            uncalibrated=self.condition == NOT_MEASURED.key,
             retired=RETIRED_OF[self.retired],
-            flagged=bool(self.flagged),
             order=Order(self.order),
             backwards=self.backwards,
             after=self.after or None,

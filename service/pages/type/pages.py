@@ -18,6 +18,7 @@ from service.flags.store import FlagQuery, Flags
 from service.fleet.condition import UnitSummary
 from service.fleet.records import FleetQuery
 from service.fleet.store import Fleet
+from service.fleet.use import Use
 from service.groups.records import Level
 from service.groups.sections import GroupSection, group_section
 from service.judging.records import Usable
@@ -27,7 +28,7 @@ from service.models.records import ModelRevision, Scope
 from service.models.rules import in_force
 from service.models.sections import AcceptedCause, accepted_causes
 from service.models.store import Models
-from service.pages.fleet.pages import FleetRow, fleet_row
+from service.pages.fleet.pages import FleetRow, UseCount, fleet_row, use_counts
 from service.pages.fleet.view import FleetView
 from service.pages.type.laws import laws_in_words, put_in_force
 from service.pages.type.tolerances import (
@@ -42,10 +43,9 @@ from service.pages.type.tolerances import (
 )
 from service.people.dependencies import SEE_OTHER, By, Key, StorageOf, Why
 from service.sessions.records import PARAMETERS
-from service.sessions.words.conditions import Condition, condition_of
 from service.storage.audit import Audit
 from service.storage.queries import Store
-from service.types.records import ToleranceRevision, TypeUse, UnitType, WantedTolerances
+from service.types.records import ToleranceRevision, UnitType, WantedTolerances
 from service.types.rules import tolerances_of
 from service.types.store import UnitTypes
 from service.web.dependencies import Now, Reading, SettingsOf
@@ -62,7 +62,9 @@ class TypeLine:
     """One type in the list."""
 
     unit_type: UnitType
-    use: TypeUse
+    units: int
+    uses: Mapping[Use, int]
+    """Number of its units with each answer."""
 
 
 @dataclass(frozen=True)
@@ -85,10 +87,11 @@ class TypeReport:
     """Causes that engineers accepted into its model, and that hold."""
 
 
-def every_type(store: Store) -> tuple[TypeLine, ...]:
-    """All types, by name, in two queries."""
-    uses = UnitTypes(store).uses()
-    return tuple(TypeLine(known, uses[known.name]) for known in UnitTypes(store).page(0, MOST_TYPES))
+def every_type(store: Store, now: datetime) -> tuple[TypeLine, ...]:
+    """All types, by name."""
+    units, uses = UnitTypes(store).uses(), Fleet(store).uses_at(now)
+    known = UnitTypes(store).page(0, MOST_TYPES)
+    return tuple(TypeLine(one, units[one.name].units, uses.get(one.name, {})) for one in known)
 
 
 def type_report(store: Store, name: str, now: datetime) -> TypeReport:
@@ -96,7 +99,7 @@ def type_report(store: Store, name: str, now: datetime) -> TypeReport:
     unit_type = UnitTypes(store).get(name)
     revisions, units = UnitTypes(store).revisions(name), Fleet(store).units(FleetQuery(unit_type=name, limit=MOST + 1))
     return TypeReport(
-        line=TypeLine(unit_type, UnitTypes(store).uses(name)[name]),
+        line=TypeLine(unit_type, UnitTypes(store).uses(name)[name].units, Fleet(store).uses_at(now).get(name, {})),
         kinds=UnitTypes(store).kinds(name),
         revisions=revisions,
         setters=Audit(store).who_did("tolerances", name, [revision.since for revision in revisions]),
@@ -115,22 +118,13 @@ KINDS = {ACCELEROMETER: "accelerometer", GYROSCOPE: "gyro"}
 
 
 @dataclass(frozen=True)
-class TypeTile:
-    """How many units of a type are in one condition; a click shows them."""
-
-    condition: Condition
-    count: int
-    url: str
-
-
-@dataclass(frozen=True)
 class TypeRow:
     """One type in the list."""
 
     name: str
     block: str
     units: int
-    tiles: tuple[TypeTile, ...]
+    counts: tuple[UseCount, ...]
     """Worst first, none without a unit."""
     tolerances: tuple[str, ...]
 
@@ -221,10 +215,11 @@ def type_page(report: TypeReport, group: GroupSection | None = None) -> TypePage
 
 def _row(line: TypeLine) -> TypeRow:
     known = line.unit_type
+    counts = tuple(one for one in use_counts(line.uses, FleetView(type=known.name)) if one.count)
     named = [
         say("{quantity} {amount}", quantity=name, amount=text) for name, text in _limits(known) if text != NOT_JUDGED
     ]
-    return TypeRow(known.name, _block(known), line.use.units, _tiles(known.name, line.use), tuple(named))
+    return TypeRow(known.name, _block(known), line.units, counts, tuple(named))
 
 
 def _block(known: UnitType) -> str:
@@ -233,14 +228,6 @@ def _block(known: UnitType) -> str:
     if known.gyro_tolerances is not None:
         return say("{count} accelerometers and gyros", count=count)
     return counted(count, KINDS.get(known.block, known.block)) if known.block else "Not measured yet"
-
-
-def _tiles(name: str, use: TypeUse) -> tuple[TypeTile, ...]:
-    return tuple(
-        TypeTile(condition_of(verdict), count, FleetView(condition=verdict.value, type=name).url())
-        for verdict, count in reversed(use.verdicts.items())
-        if count
-    )
 
 
 def _revision(limits: ToleranceRevision, known: UnitType, report: TypeReport) -> RevisionRow:
@@ -282,9 +269,9 @@ router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
 
 
 @router.get("/unit-types")
-def show_types(request: Request, store: Reading) -> HTMLResponse:
-    """Every unit type with its tolerances and how its units are."""
-    return render(request, "unit_types.html", types_page(every_type(store)))
+def show_types(request: Request, store: Reading, now: Now) -> HTMLResponse:
+    """Every unit type with its tolerances and what its units may be used for."""
+    return render(request, "unit_types.html", types_page(every_type(store, now)))
 
 
 async def _form(request: Request) -> dict[str, str]:

@@ -12,8 +12,9 @@ from pydantic import TypeAdapter
 from estimator.json_object import Json
 from service.flags.api import FlagPage, WantedState, flag_page
 from service.flags.store import FlagQuery
-from service.fleet.records import FleetQuery, Order
+from service.fleet.records import FleetQuery, Order, UseAt
 from service.fleet.store import Fleet
+from service.fleet.use import Use
 from service.judging.records import Usable
 from service.judging.usable_reading import usable_unit
 from service.kit.answer import answer
@@ -73,7 +74,7 @@ def _point_row(serial: str, point: HistoryPoint) -> dict[str, Any]:
 
 
 router = APIRouter(prefix="/units", tags=["units"])
-WORST_FIRST = Order.CONDITION
+USE_FIRST = Order.USE
 
 
 @router.get("", responses=errors(422))
@@ -82,6 +83,7 @@ def list_units(
     now: Now,
     window: WindowOf,
     language: LanguageOf,
+    use: Annotated[Use | None, Query(description="Only those with this answer: may they be used?")] = None,
     verdict: WantedVerdict = None,
     text: WantedText = None,
     reserved: Annotated[bool | None, Query(description="Only those whose verdict has a reservation, or none.")] = None,
@@ -95,13 +97,14 @@ def list_units(
     custodian: Annotated[Text | None, Query(description="Only those that this custodian has.")] = None,
     uncalibrated: Annotated[bool, Query(description="Only registered units of which no session counts yet.")] = False,
     retired: Annotated[bool | None, Query(description="Only retired units, or units in use.")] = False,
-    order: Annotated[Order, Query(description="By condition worst first, by due date, serial number …")] = WORST_FIRST,
+    order: Annotated[Order, Query(description="By use, condition, due date, serial number …")] = USE_FIRST,
     backwards: Annotated[bool, Query(description="The same order, last first.")] = False,
     after: Annotated[Text | None, Query(description="Only those that come after this serial number.")] = None,
 ) -> UnitPage:
-    """Units, worst first unless another order is asked for."""
+    """Units, those that may not be used first unless another order is asked for."""
     wanted = FleetQuery(
-        verdict, text, reserved, offset=window.offset, limit=window.limit,
+        use=None if use is None else UseAt(use, now), verdict=verdict, text=text, reserved=reserved,
+        offset=window.offset, limit=window.limit,
         due_before=due_before, unit_type=unit_type, stand=stand, lot=lot, flagged=flagged,
         location=location, custodian=custodian, uncalibrated=uncalibrated, retired=retired,
         order=order, backwards=backwards, after=after,

@@ -1,32 +1,34 @@
 """The page of one unit: its verdict now, and what it rests on."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import groupby
 
-from estimator.message import say
+from estimator.message import capitalised, say
 from service.flags.pages import FlagCard, flag_cards
 from service.flags.records import Flag
+from service.fleet.use import WORDS
 from service.groups.sections import GroupSection
 from service.judging.covered import CoveredTemperatures
 from service.judging.records import Usable
 from service.judging.temperature_words import covered_in_words
 from service.judging.usable_words import next_in_words
-from service.judging.use import Use
 from service.kit.failure import unit_failed
-from service.kit.measures import NOISE, day_of, in_measure
-from service.outlook.charts import ParameterCourse, TrackPoint, history_charts
+from service.kit.measures import NOISE, PARAMETER_NAMES, day_of, in_measure, number
+from service.outlook.charts import ParameterCourse, TrackPoint, history_charts, tracks_of
 from service.outlook.records import UnitOutlook
 from service.outlook.words import NextCalibration, next_calibration
 from service.pages.unit.events import KINDS, STEPS, StageTable, UnitEvent, events_of, stage_table
 from service.pages.unit.parameters import ParameterHead, parameter_heads
 from service.pages.unit.remarks import Remarks
 from service.pages.unit.report import UnitReport
+from service.pages.unit.shares import ShareTable, share_table
 from service.papers.found_and_left import FoundAndLeft
 from service.sessions.charts import ChartSet
 from service.sessions.lines import SessionLine, session_lines
 from service.sessions.records import HistoryPoint
-from service.sessions.words.conditions import NOT_JUDGED, Condition, condition_of
+from service.sessions.states import RecordState
+from service.sessions.words.conditions import NOT_JUDGED
 from service.sessions.words.noise import MEANINGS, NAMES, grown, term_in_words
 from service.units.records import Custody, CustodyStep, Note, Service
 
@@ -131,14 +133,20 @@ class UnitView:
     """Everything a unit's page shows."""
 
     report: UnitReport
-    condition: Condition
-    use: Use
-    said: str
-    """What it may be used for, and what to do."""
-    sentence: str
-    """Why."""
-    reason: str
-    """Why the verdict is what it is; empty where the answer says it already."""
+    usable: Usable
+    word: str
+    """What it may be used for: ``Do not use``."""
+    action: str
+    """What to do; where nothing is to be done, when the next calibration is due."""
+    why: tuple[str, ...]
+    """Why, and how it came to that."""
+    measured: str
+    """When, where and how warm the session that decides was measured; empty before the first."""
+    due: str
+    """When the next calibration is due, where that does not lead."""
+    worst: ChartSet | None
+    """The history of the parameter that the verdict hangs on; None where none was judged."""
+    shares: ShareTable | None
     failed: str
     """That what follows from its latest records could not be worked out, and why; empty else."""
     parameters: tuple[ParameterHead, ...]
@@ -160,8 +168,6 @@ class UnitView:
     """What happened there, in words."""
     kinds: tuple[tuple[str, str], ...]
     """What can be done to a unit: identifier and name."""
-    headline: str
-    """What the unit needs next."""
     next: NextCalibration | None
     """None before a session was judged."""
     raw: bool
@@ -183,6 +189,7 @@ def unit_page(
     *,
     raw: bool = False,
     noise: Sequence[HistoryPoint] = (),
+    worst: Sequence[HistoryPoint] = (),
     flags: Sequence[Flag] = (),
     notes: Sequence[Note] = (),
     pair: FoundAndLeft | None = None,
@@ -193,18 +200,23 @@ def unit_page(
     history_of_custody: Sequence[Custody] = (),
     temperatures: CoveredTemperatures | None = None,
 ) -> UnitView:
-    """The page of a unit with the latest of every parameter, flags and notes, as found and as left, and when it must
-    come back."""
-    condition = condition_of(report.summary.verdict, is_reference=report.summary.is_reference)
+    """The page of a unit with the latest of every parameter, the history of its ``worst`` one, flags and notes, as
+    found and as left, and when it must come back."""
+    services = [service for service in report.services if service.state is RecordState.ACCEPTED]
+    heads = parameter_heads(latest, report.summary.worst_parameter)
+    coming = None if outlook is None else next_calibration(outlook, usable.as_of)
     return UnitView(
         report=report,
-        use=usable.answer,
-        said=usable.use,
-        sentence=usable.why,
-        reason=_reason(report.summary.reason or condition.meaning, usable),
+        usable=usable,
+        word=WORDS[usable.answer],
+        action=capitalised(usable.action) or next_in_words(usable),
+        why=tuple(_why(usable, report, coming)),
+        measured=_measured(report),
+        due=next_in_words(usable) if usable.action and usable.due else "",
+        worst=_course(worst, services, outlook),
+        shares=share_table(latest, heads),
         failed=unit_failed(report.summary.failed) if report.summary.failed else "",
-        condition=condition,
-        parameters=parameter_heads(latest, report.summary.worst_parameter),
+        parameters=heads,
         sessions=session_lines(report.sessions),
         reference=_reference(report),
         covered=covered_in_words(temperatures),
@@ -212,8 +224,7 @@ def unit_page(
         events=events_of((*report.services, *report.withdrawn_services), notes, report.withdrawals),
         stages=stage_table(pair),
         kinds=tuple(KINDS.items()),
-        headline=next_in_words(usable),
-        next=None if outlook is None else next_calibration(outlook, usable.as_of),
+        next=coming,
         raw=raw,
         noise=noise_part(noise, report.services, [note for note in notes if note.withdrawal is None]),
         group=group,
@@ -224,8 +235,34 @@ def unit_page(
     )
 
 
-def _reason(reason: str, usable: Usable) -> str:
-    return "" if reason in usable.why else reason
+def _why(usable: Usable, report: UnitReport, coming: NextCalibration | None) -> Iterator[str]:
+    """The reason, and of what moves the sentence about the parameter that it names."""
+    yield usable.objection or usable.why
+    unit = report.summary
+    name = f"{unit.worst_sensor} {PARAMETER_NAMES.get(unit.worst_parameter or '', '')}"
+    if not usable.usable and coming is not None:
+        yield from (sentence for sentence in coming.moving if sentence.startswith(f"{name} "))
+
+
+def _measured(report: UnitReport) -> str:
+    latest = next((s for s in report.sessions if s.id == report.summary.last_session), None)
+    if latest is None:
+        return ""
+    parts = {"day": day_of(latest.started_at), "stand": latest.stand or "", "warm": ""}
+    if latest.temperature is not None:
+        parts["warm"] = say(", {temperature} °C", temperature=number(latest.temperature, 1))
+    return say("Measured {day} on {stand}{warm}." if latest.stand else "Measured {day}{warm}.", **parts)
+
+
+def _course(
+    points: Sequence[HistoryPoint], services: Sequence[Service], outlook: UnitOutlook | None
+) -> ChartSet | None:
+    if not points:
+        return None
+    ((track,),) = tracks_of(points, services)
+    found = history_charts([track], services, (), () if outlook is None else outlook.trends)
+    name = say("{sensor} {parameter}", sensor=track.sensor, parameter=PARAMETER_NAMES[track.parameter])
+    return replace(found, name="worst", panels=(replace(found.panels[0], title=name, condition=None),))
 
 
 def _reference(report: UnitReport) -> str:

@@ -11,9 +11,9 @@ from estimator.moments import as_stated
 from estimator.nominal_vector import NominalVector, nominal_vector
 from estimator.session import ACCELEROMETER, GYROSCOPE, Array
 from service.errors import ConflictError
+from service.fleet.use import Use
 from service.judging.records import Usable
 from service.judging.usable_reading import usable_unit
-from service.judging.use import Use
 from service.judging.words import verdict_in_words
 from service.papers.correction import corrected
 from service.sessions.calibrations_store import SessionNoises

@@ -8,8 +8,10 @@ from typing import Any
 import httpx
 from icalendar import Calendar
 
-from service.judging.use import Use, in_words
+from estimator.message import capitalised
+from service.fleet.use import Use, in_words
 from service.kit.measures import day_of
+from service.pages.fleet.pages import SHORT
 from tests.service.papers.documents import text_of
 
 HTML = {"Accept": "text/html"}
@@ -61,9 +63,13 @@ def check_unit(client: httpx.Client, serial: str, fleet: FleetSaid) -> dict[str,
     said = answer["use"]
     assert said == in_words(Use(answer["answer"]), answer["action"])
     page = plain(client.get(f"/units/{serial}", headers=HTML).raise_for_status().text)
-    assert f"<b>{said}.</b>" in page
-    row = fleet.page.split(f'href="/units/{serial}"')[0].rpartition("<tr")[2]
-    assert (said in row) is (answer["answer"] != Use.YES)
+    word = in_words(Use(answer["answer"]), "")
+    assert f"</span> {word}</h1>" in page
+    assert not answer["action"] or f'<p class="do">{capitalised(answer["action"])}.</p>' in page
+    before, _, after = fleet.page.partition(f'href="/units/{serial}"')
+    row = before.rpartition("<tr")[2] + after.partition("</tr")[0]
+    assert f"<span>{SHORT[Use(answer['answer'])]}</span>" in row
+    assert capitalised(answer["action"]) in row
     assert said in fleet.paper
     units, report, due = fleet.lists
     known = (answer["usable"], said)
@@ -84,7 +90,7 @@ def _check_date(answer: dict[str, Any], page: str, label: str, event: Any) -> No
     is_overdue = answer["until"] is not None and answer["until"] < answer["as_of"]
     assert (event is None) is (answer["until"] is None)
     if event is not None:
-        assert (use is Use.YES) is ("use" not in str(event["DESCRIPTION"]))
+        assert str(event["DESCRIPTION"]).startswith(answer["use"])
     if answer["until"] is None or not (answer["usable"] or is_overdue):
         assert in_words(use, "").upper() in label
         assert "Calibration due" not in label

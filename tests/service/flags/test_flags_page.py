@@ -17,10 +17,7 @@ def form(client: httpx.Client) -> str:
     return found.group(1)
 
 
-def test_the_fleet_counts_flags_and_leads_to_them(flagged: httpx.Client) -> None:
-    page = flagged.get("/", headers=HTML).text
-    assert '<a href="/flags">1 flag</a> open.' in page
-    assert 'href="/units/BA-017#flags">1 flag</a>' in page
+def test_the_list_names_the_sensor_and_the_matter(flagged: httpx.Client) -> None:
     assert "A3: out of tolerance" in flagged.get("/flags", headers=HTML).text
 
 

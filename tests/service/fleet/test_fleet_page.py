@@ -1,8 +1,7 @@
 """The fleet page's context."""
 
-from dataclasses import replace
-
 from service.fleet.condition import FleetCondition, ToleranceUsed
+from service.fleet.use import Use
 from service.pages.fleet.pages import fleet_page, margin_of
 from service.pages.fleet.view import FleetView
 from service.sessions.decision import Verdict
@@ -11,17 +10,14 @@ from tests.service.pages.records import unit_summary, uses_of
 CONDITION = FleetCondition(units=120, verdicts={v: 20 + 2 * v.severity for v in Verdict}, simulated=0)
 
 
-def test_tiles_count_every_condition_worst_first() -> None:
-    tiles = fleet_page(CONDITION, (), {}, FleetView()).tiles
-    assert [(t.condition.word, t.count) for t in tiles] == [
-        ("Unfit", 28), ("Probably unfit", 26), ("Undecided", 24), ("Probably fit", 22), ("Fit", 20),
+USED = {Use.YES: 3, Use.RESERVED: 2, Use.NO: 9, Use.PENDING: 0}
+
+
+def test_units_are_counted_by_use_those_that_must_not_be_used_first() -> None:
+    counts = fleet_page(CONDITION, (), {}, FleetView(), used=USED).counts
+    assert [(one.count, one.words) for one in counts] == [
+        (9, "must not be used"), (2, "with reservation"), (3, "may be used"),
     ]  # fmt: skip
-
-
-def test_units_with_a_reference_only_are_not_counted_as_undecided() -> None:
-    page = fleet_page(replace(CONDITION, references=7), [], {}, FleetView())
-    counts = {tile.condition.word: tile.count for tile in page.tiles}
-    assert (counts["Undecided"], counts["Reference set"], sum(counts.values())) == (17, 7, CONDITION.units)
 
 
 def test_units_are_numbered_through_the_pages() -> None:
@@ -44,16 +40,16 @@ def test_a_page_that_is_read_backwards_holds_the_units_next_to_where_it_was_left
 
 
 def test_changing_the_filter_goes_back_to_the_first_page() -> None:
-    view = FleetView(q="BA 1", condition="fail", page=3)
-    assert view.url() == "/?q=BA+1&condition=fail&page=3"
-    assert view.url(condition="pass", page=1) == "/?q=BA+1&condition=pass"
+    view = FleetView(q="BA 1", use="no", page=3)
+    assert view.url() == "/?q=BA+1&use=no&page=3"
+    assert view.url(use="yes", page=1) == "/?q=BA+1&use=yes"
     assert FleetView().url() == "/"
 
 
-def test_chosen_tile_leads_back_to_all() -> None:
-    tiles = {t.condition.key: t for t in fleet_page(CONDITION, (), {}, FleetView(condition="fail")).tiles}
-    assert tiles["fail"].chosen
-    assert tiles["fail"].url == "/"
+def test_a_chosen_count_leads_back_to_all() -> None:
+    counts = {one.use: one for one in fleet_page(CONDITION, (), {}, FleetView(use="no"), used=USED).counts}
+    assert (counts[Use.NO].chosen, counts[Use.NO].url) == (True, "/")
+    assert counts[Use.YES].url == "/?use=yes"
 
 
 def test_margin_in_words_and_as_a_bar() -> None:

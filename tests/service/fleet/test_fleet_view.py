@@ -11,13 +11,13 @@ from tests.service.pages.records import NOON
 
 
 def test_a_view_comes_back_from_its_own_address() -> None:
-    view = FleetView(q="BA", condition="fail", due="overdue", type="RA-6", stand="S 1", flagged="yes", sort="-due")
-    assert view.url() == "/?q=BA&condition=fail&due=overdue&type=RA-6&stand=S+1&flagged=yes&sort=-due"
+    view = FleetView(q="BA", use="no", due="overdue", type="RA-6", stand="S 1", sort="-due")
+    assert view.url() == "/?q=BA&use=no&due=overdue&type=RA-6&stand=S+1&sort=-due"
     assert (view.order, view.backwards) == (Order.DUE, True)
 
 
 def test_what_nobody_knows_is_left_out() -> None:
-    assert FleetView(condition="odd", due="soon", sort="colour").url() == "/"
+    assert FleetView(use="odd", due="soon", sort="colour").url() == "/"
 
 
 def test_a_heading_orders_the_list_and_then_turns_it_round() -> None:

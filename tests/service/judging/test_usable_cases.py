@@ -7,9 +7,10 @@ from typing import Any
 import pytest
 
 from service.flags.records import Matter
+from service.fleet.use import Use
+from service.judging import usable_words as words
 from service.judging.records import OpenFlag, UseFacts
 from service.judging.usable import usable
-from service.judging.use import Use
 from service.outlook.records import Action
 from service.sessions.decision import Verdict
 from service.sessions.doubt import DoubtKind as Doubt
@@ -87,8 +88,8 @@ CASES: dict[str, tuple[UseFacts, Use, str]] = {
         said_with(Doubt.OTHER_MODEL, verdict=Verdict.UNDECIDABLE), Use.RESERVED, "repeat the session",
     ),
     "measured at another temperature": (said_with(Doubt.TEMPERATURE, share=1.5), Use.RESERVED, "repeat the session"),
-    "a flag out of tolerance": (flagged(Matter.TOLERANCE), Use.NO, "settle flag 3"),
-    "another flag": (flagged(Matter.DRIFT), Use.RESERVED, "settle flag 3"),
+    "a flag out of tolerance": (flagged(Matter.TOLERANCE), Use.NO, "have an engineer resolve flag 3"),
+    "another flag": (flagged(Matter.DRIFT), Use.RESERVED, "have an engineer resolve flag 3"),
     "the flag that it is overdue": (flagged(Matter.OVERDUE), Use.YES, ""),
     "a later session questioned": (
         replace(PLAIN, questioned_at=NOON + DAY), Use.RESERVED, "accept, correct or withdraw the session that waits",
@@ -116,5 +117,5 @@ def test_a_date_counts_only_where_nothing_must_be_done_first() -> None:
 
 def test_what_is_known_for_certain_comes_before_what_is_still_worked_out() -> None:
     both = usable(replace(of_unit(verdict=Verdict.FAIL), is_waiting=True), NOON)
-    assert both.why.startswith("Not fit by its session of 1 Mar 2026")
+    assert both.why == both.reasons[0] != words.VERDICT_PENDING
     assert len(both.reasons) == 2

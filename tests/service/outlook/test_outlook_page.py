@@ -98,7 +98,7 @@ def test_the_fleet_page_marks_what_is_overdue() -> None:
     units = [replace(unit_summary("U1"), due=NOON - YEAR), replace(unit_summary("U2"), due=NOON + YEAR)]
     page = fleet_page(condition, units, uses_of(*units), FleetView(), overdue=1)
     assert [row.overdue for row in page.rows] == [True, False]
-    assert page.overdue == "1 unit overdue for calibration"
+    assert [(one.words, one.url) for one in page.concerns] == [("1 is overdue", "/?due=overdue&sort=due")]
 
 
 def rates_of(units: int) -> list[Rate]:

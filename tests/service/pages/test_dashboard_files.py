@@ -25,7 +25,7 @@ PAGE = (DOCS / "how-to" / "dashboards.md").read_text("utf-8")
 FROM, TO = 1_735_689_600_000, 1_830_297_600_000
 """2025 to 2027, in milliseconds."""
 SHOWN = f"to_timestamp({FROM // 1000}) AND to_timestamp({TO // 1000})"
-TYPES = {"string": str, "number": int | float, "timestamp_epoch": int, "timestamp": str}
+TYPES = {"string": str, "number": int | float, "timestamp_epoch": int, "timestamp": str, "boolean": bool}
 """Of Infinity's columns, as JSON brings them."""
 FORMATS: dict[str | None, Callable[[str], str]] = {
     None: str,

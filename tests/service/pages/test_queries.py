@@ -52,8 +52,8 @@ PAGES: dict[str, tuple[int, Page]] = {
     "list of stands": (4, every_stand),
     "stand": (8, lambda store: stand_report(store, "ODG-1", NOW)),
     "uploads": (2, lambda store: Arrivals(store).page(ArrivalQuery())),
-    "list of types": (2, every_type),
-    "type": (9, lambda store: type_report(store, "accelerometer × 6, V", NOW)),
+    "list of types": (4, lambda store: every_type(store, NOW)),
+    "type": (11, lambda store: type_report(store, "accelerometer × 6, V", NOW)),
 }
 
 

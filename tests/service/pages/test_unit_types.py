@@ -6,9 +6,9 @@ from dataclasses import replace
 import httpx
 import pytest
 
+from service.fleet.use import Use
 from service.pages.type.pages import TypeLine, TypeReport, type_page, types_page
-from service.sessions.decision import Verdict
-from service.types.records import ToleranceRevision, Tolerances, TypeUse, UnitType
+from service.types.records import ToleranceRevision, Tolerances, UnitType
 from tests.builders import mixed_block
 from tests.conftest import Holding
 from tests.databases import one_engine
@@ -22,24 +22,24 @@ KIND = UnitType(
 )
 
 
-def use(**counts: int) -> TypeUse:
-    verdicts = {verdict: counts.get(verdict.name.lower(), 0) for verdict in Verdict}
-    return TypeUse(sum(counts.values()), verdicts)
+def line(known: UnitType = KIND, **counts: int) -> TypeLine:
+    """A type with units of each answer."""
+    return TypeLine(known, sum(counts.values()), {Use[name.upper()]: count for name, count in counts.items()})
 
 
-def test_a_type_is_listed_with_its_limits_and_the_worst_units_first() -> None:
-    [row] = types_page([TypeLine(KIND, use(passed=0, fail=1, undecidable=2))]).rows
+def test_a_type_is_listed_with_its_limits_and_the_units_that_must_not_be_used_first() -> None:
+    [row] = types_page([line(yes=2, no=1)]).rows
     assert (row.block, row.units) == ("1 accelerometer", 3)
-    assert [(tile.condition.word, tile.count) for tile in row.tiles] == [("Unfit", 1), ("Undecided", 2)]
-    assert row.tiles[0].url == "/?condition=fail&type=RA-6"
+    assert [(one.words, one.count) for one in row.counts] == [("must not be used", 1), ("may be used", 2)]
+    assert row.counts[0].url == "/?use=no&type=RA-6"
     assert row.tolerances == ("Scale factor ±100\u202fppm", "Bias ±50\u202fµg", "Input axis 20.63\u202farcsec")
 
 
 def test_the_first_tolerances_are_the_service_s_own() -> None:
     revisions = tuple(ToleranceRevision(n, NOON, KIND.tolerances, None) for n in (1, 2))
-    report = TypeReport(TypeLine(KIND, use(fail=1)), {}, revisions[:1], {}, (), (), {}, ())
+    report = TypeReport(line(no=1), {}, revisions[:1], {}, (), (), {}, ())
     assert "the service itself" in type_page(report).revisions[0].who
-    report = TypeReport(TypeLine(KIND, use(fail=1)), {}, revisions[1:], {NOON: "K. Ito"}, (), (), {}, ())
+    report = TypeReport(line(no=1), {}, revisions[1:], {NOON: "K. Ito"}, (), (), {}, ())
     assert type_page(report).revisions[0].who == "K. Ito"
 
 
@@ -67,7 +67,7 @@ def test_a_mixed_block_s_sensors_have_the_kinds_that_a_session_told(holding: Hol
 def test_a_block_of_gyros_with_accelerometers_shows_what_each_is_judged_by() -> None:
     gyros = Tolerances(1e-3, 2e-7, None, 1e-4)
     mixed = replace(KIND, block="gyroscope", tolerances=gyros, gyro_tolerances=gyros)
-    [row] = types_page([TypeLine(mixed, use(fail=1))]).rows
+    [row] = types_page([line(mixed, no=1)]).rows
     assert "Bias, accelerometers ±50\u202fµg" in row.tolerances
     assert "Bias, gyros ±0.04125\u202f°/h" in row.tolerances
 

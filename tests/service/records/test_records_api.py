@@ -105,7 +105,7 @@ def test_the_forms_of_the_pages_do_the_same(http: httpx.Client) -> None:
 def test_the_page_of_a_unit_without_an_accepted_session_is_there(http: httpx.Client) -> None:
     for id in (FIRST, SECOND):
         post(http, f"/sessions/{id}/withdraw")
-    assert "No session of this unit is accepted" in http.get("/units/BA-017").text
+    assert "None of its sessions counts as a calibration: calibrate the unit." in http.get("/units/BA-017").text
     assert "BA-017" not in json.dumps(http.get("/api/v1/units").json())
 
 

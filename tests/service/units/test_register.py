@@ -217,7 +217,7 @@ def posted(http: httpx.Client, what: str, form: dict[str, str]) -> str:
 def test_the_register_by_page(http: httpx.Client) -> None:
     form = {"serial": "BA-900", "unit_type": "RA-9", "location": "Hangar 2", "by": "K. Ito"}
     page = http.post("/register", data=form, follow_redirects=True)
-    assert "No calibration yet" in page.text
+    assert "None of its sessions counts as a calibration" in page.text
     assert "Hangar 2" in page.text
     form = {"location": "Hangar 3", "custodian": "M. Sato", "by": "K. Ito"}
     assert "Hangar 2 → Hangar 3" in posted(http, "moves", form)

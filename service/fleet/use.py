@@ -16,6 +16,8 @@ class Use(StrEnum):
     """Its verdict or its dates are being worked out; until then it may not."""
 
 
+RANKS = {Use.NO: 0, Use.PENDING: 1, Use.RESERVED: 2, Use.YES: 3}
+"""Places in the order of attention."""
 WORDS = {
     Use.YES: "May be used",
     Use.RESERVED: "May be used with reservation",
