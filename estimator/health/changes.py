@@ -32,7 +32,7 @@ class Changes:
     scatter: float = 0.0
     """τ, rad or relative."""
     dofs: tuple[tuple[float | None, float | None], ...] = ()
-    """Of each sensor the degrees of freedom of both covariances; none where all noise is known."""
+    """Degrees of freedom of both covariances, sensor by sensor; empty where all noise is known."""
 
     @cached_property
     def rows(self) -> int:
@@ -81,7 +81,7 @@ class AxisPairs:
     origin: Array
     """(2 m, 2 m) rad²."""
     dofs: tuple[tuple[float | None, float | None], ...]
-    """Of each sensor the degrees of freedom of both covariances; none where all noise is known."""
+    """Degrees of freedom of both covariances, sensor by sensor; None where the noise is known."""
 
     def about(self, turn: Array) -> Changes:
         """The changes that a rotation ``turn`` (3, 3) of the block, dimensionless, leaves: along the reference's
@@ -119,7 +119,7 @@ def axis_pairs(current: Calibration, reference: Calibration, kind: str) -> AxisP
 
 
 def scale_changes(current: Calibration, reference: Calibration, kind: str) -> Changes | None:
-    """Of the scales of one kind of sensor; None where no scale is known in both sessions."""
+    """The scale changes of one kind of sensor; None where no scale is known in both sessions."""
     known = _known(current, reference, kind, "scale")
     elements = [f"{now.name}.scale" for now, _, _ in known]
     covariance, origin = _joint(current, elements), _joint(reference, elements)
@@ -138,7 +138,7 @@ Known = list[tuple[SensorCalibration, SensorCalibration, Deviation]]
 
 
 def _dofs(known: Known) -> tuple[tuple[float | None, float | None], ...]:
-    """Of each sensor's change the degrees of freedom of both sessions."""
+    """Degrees of freedom of this session and of the reference, for each sensor's change."""
     return tuple((d.current_dof, d.origin_dof) for _, _, d in known)
 
 

@@ -1,4 +1,4 @@
-"""How blocks are seated: the scatter of a mounting on every stand, by restricted maximum likelihood.
+"""The scatter with which blocks are seated on every stand, by restricted maximum likelihood.
 
 What session i of unit u, on stand s, shows of a block's pose (of its scales) is
 
@@ -238,7 +238,7 @@ def _precision(g: SeatedUnits, scatter: SeatingScatter) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class _SeatingSums:
-    """What a step needs of every variance: A and B/θ²."""
+    """The sums A and B/θ² that a step needs for every variance."""
 
     trace: Array
     square: Array
