@@ -1,4 +1,4 @@
-"""What the stand applies: gravity, Earth rate and the applied vector of every row, with its errors.
+"""The vectors that a stand applies: gravity, Earth rate and the applied vector of every row, with its errors.
 
 Sources: analytic alignment paper, equations (7)–(11), (31), corrected as the errata state; Helmert (1901) gravity.
 Frames and signs: see the package page.
@@ -76,7 +76,7 @@ SCHEDULES = 32
 
 @dataclass(frozen=True, eq=False)
 class Geometry:
-    """What a schedule applies to every sensor. R rows, m sensors, k constant stand errors, block axes."""
+    """Applied vectors of a schedule on every sensor. R rows, m sensors, k constant stand errors, block axes."""
 
     n: Array
     """(R, m, 3) applied vectors, m/s² (rad/s)."""
@@ -116,19 +116,21 @@ def stand_vector(elevation: float, beta: Array, errors: StandErrors | None = Non
 
 @dataclass(frozen=True)
 class Schedule:
-    """All of a session on a stand that its geometry depends on, comparable and hashable by content: no reading."""
+    """Everything in a session on a stand that its geometry depends on, comparable and hashable by content: no
+    reading.
+    """
 
     site: Site
     stand: Stand
     count_time: float | None
     kinds: tuple[str, ...]
-    """Of the m sensors."""
+    """Kinds of the m sensors."""
     bits: tuple[bytes, ...]
-    """Of β, the runs, the mounting and the turn of the flipped run."""
+    """Bytes of β, the runs, the mounting and the turn of the flipped run."""
 
     @classmethod
     def of(cls, session: CalibrationSession) -> "Schedule":
-        """Of a session on a stand."""
+        """The schedule of a session on a stand."""
         assert session.stand is not None
         assert session.beta is not None
         arrays = (session.beta, np.asarray(session.flipped, dtype=bool), session.mounting, session.flip_turn)

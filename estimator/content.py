@@ -1,4 +1,4 @@
-"""What depends on nothing but its subject, worked out once: of a session's content, or of an object while it lives.
+"""Results that depend on nothing but their subject, worked out once: for a session's content, or while an object lives.
 
 Whoever reads a session again has the same one: the next diagnosis of a unit asks for its earlier sessions anew.
 """
@@ -25,7 +25,7 @@ LARGEST = 600
 
 
 FIELDS = {kind: tuple(attribute.name for attribute in fields(kind)) for kind in (CalibrationSession, Sensor)}
-"""Of what holds arrays and cannot be compared itself."""
+"""Attributes by class, for classes that hold arrays and cannot be compared themselves."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ def once(function: Callable[[Owner, *Rest], Result]) -> Callable[[Owner, *Rest],
 
 
 class OfSession(Hashable, Protocol):
-    """What was worked out of a session; it never changes, and is distinguished from others by identity."""
+    """A result worked out of a session; it never changes, and is told from others by identity."""
 
     @property
     def session(self) -> CalibrationSession: ...

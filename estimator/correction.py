@@ -1,4 +1,4 @@
-"""What firmware does with a calibration: readings back to specific force or angular rate in block axes.
+"""Applies a calibration, as firmware does: readings back to specific force or angular rate in block axes.
 
 Theory
 ------
@@ -135,7 +135,7 @@ def correction_of(session: CalibrationSession, calibration: Calibration) -> Corr
 
 
 def _unseen(sensor: SensorCalibration) -> str:
-    """What is missing for an inversion; a quadratic term may be."""
+    """The parameters missing for an inversion, as a message; a quadratic term may be missing."""
     missing = [name for name in ("scale", "bias", "axis") if not sensor.observable.get(name, False)]
     return say("the session does not observe its {missing}", missing=joined(", ", missing)) if missing else ""
 

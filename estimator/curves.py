@@ -16,7 +16,7 @@ from estimator.coverage import coverage_factor
 from estimator.session import Array
 
 HYSTERESIS, LAG, MISFIT = "hysteresis", "lag", "lack-of-fit"
-"""What readings show beside a curve."""
+"""Effects that readings may show beside a curve."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,7 +26,7 @@ class Curve(Document):
     coefficients: Array
     """(q,) SI (for a scale factor reading units per SI) per K^k."""
     order: int
-    """Of the polynomial that the readings ask for."""
+    """Order of the polynomial that the readings ask for."""
     covariance: Array
     """(q, q) of the coefficients, those left out included."""
     scatter: float = 0.0
@@ -51,7 +51,7 @@ class SensorCurves(Document):
 
 @dataclass(frozen=True)
 class ThermalFinding(Document):
-    """What the readings of a sensor show beside its curve."""
+    """An effect that the readings of a sensor show beside its curve."""
 
     kind: str
     sensor: str
@@ -59,11 +59,11 @@ class ThermalFinding(Document):
     amplitude: float
     """Warming less cooling in the middle of the range; of a lag the largest departure; of a misfit its sigma; SI."""
     sigma: float
-    """One sigma of it; 0 of a misfit."""
+    """One sigma of the amplitude; 0 for a misfit."""
     p_value: float
-    """By chance, over all sensors and forms tried."""
+    """Chance of as large an effect where there is none, over all sensors and forms tried."""
     time_constant: float | None = None
-    """Of a lag, s."""
+    """Time constant of a lag, s."""
     alternatives: tuple[str, ...] = ()
     """Kinds that explain the same readings nearly as well."""
 

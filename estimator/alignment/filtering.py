@@ -24,7 +24,7 @@ from estimator.session import Array
 
 @dataclass(frozen=True, eq=False)
 class KalmanState:
-    """What a filter knows of n states, each in its own unit."""
+    """Estimate of n states with its covariance, each state in its own unit."""
 
     x: Array
     """(n,) estimate."""
@@ -34,12 +34,12 @@ class KalmanState:
 
 @dataclass(frozen=True, eq=False)
 class Innovation:
-    """What a measurement of k components, each in its own unit, said beyond what was expected."""
+    """Innovation of a measurement of k components, each in its own unit."""
 
     value: Array
     """(k,) ν."""
     covariance: Array
-    """(k, k) S, that ν should have."""
+    """(k, k) S, the expected covariance of ν."""
 
     @property
     def chi2(self) -> float:
@@ -89,7 +89,7 @@ end of a stop does not repeat its beginning exactly."""
 
 @dataclass(frozen=True, eq=False)
 class FilterSetting:
-    """What the filter knows besides the path."""
+    """Settings of the filter, apart from the path."""
 
     latitude: float
     gravity: float
@@ -104,7 +104,7 @@ class FilterSetting:
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """What is measured at every step. K steps."""
+    """The measurements of every step. K steps."""
 
     velocity: Array
     """(K, 2) m/s."""

@@ -1,4 +1,4 @@
-"""What every accelerometer reads at the stops and, piece by piece, while the table turns.
+"""Readings of every accelerometer at the stops and, piece by piece, while the table turns.
 
 The turn axis keeps its direction, so a sensor that the turn does nothing to reads k + p·cos θ + q·sin θ, whatever the
 lean of axis, block and sensor. A stop is one piece; a turn is cut where its rate is known (`levers`), so that what

@@ -113,8 +113,9 @@ def sticks_out(basis: Array, y: Array, stated: Array) -> Array:
 
 
 def regression(basis: Array, y: Array, stated: Array, left_out: Array) -> Predicted:
-    """Of readings y (R, m) in a basis (R, p), with ``stated`` (R, m) standard errors, NaN where there are none;
-    readings ``left_out`` (R, m) bool take no part to begin with."""
+    """Predicts readings y (R, m) in a basis (R, p), with ``stated`` (R, m) standard errors, NaN where there are none;
+    readings ``left_out`` (R, m) bool take no part to begin with.
+    """
     parts = [of_one(basis, y[:, i], stated[:, i], ~left_out[:, i]) for i in range(y.shape[1])]
     value, sigma = (np.stack(columns, axis=1) for columns in zip(*parts, strict=True))
     with np.errstate(invalid="ignore"):

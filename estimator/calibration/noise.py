@@ -90,7 +90,7 @@ def _estimated(variance: Array, y: Array, p: SensorParameters, geometry: Geometr
 
 @dataclass(frozen=True, eq=False)
 class Projection:
-    """What the fit leaves of the readings, and how the parameters lean on them. P parameters, k constant errors."""
+    """Residuals of the readings, and the dependence of the parameters on them. P parameters, k constant errors."""
 
     pulled: Array
     """(S, R, m) residuals weighted by P, 1/(m/s²) or 1/(rad/s)."""
@@ -104,7 +104,9 @@ class Projection:
 
 
 def projection_of(variance: Array, y: Array, p: SensorParameters, geometry: Geometry) -> Projection:
-    """Of readings y (S, R, m), reading units, of ``variance`` (S, R, m) at the input, (m/s²)² or (rad/s)²."""
+    """The projection of readings y (S, R, m), reading units, of ``variance`` (S, R, m) at the input, (m/s²)² or
+    (rad/s)².
+    """
     S, R, m = y.shape
     weight = 1.0 / variance
     normal, residual = linearise(y, p, geometry, weight)

@@ -67,7 +67,7 @@ def of_kind(kind: int, sizes: Array) -> tuple[float, ...]:
 
 
 def kind_of(shape: tuple[float, ...]) -> int:
-    """Of which of `KINDS` the waves of a course are."""
+    """Index in `KINDS` of the waves of a course."""
     return int(np.argmax([np.any(sizes) for sizes in np.split(np.array(shape), len(KINDS))]))
 
 

@@ -24,7 +24,7 @@ class LeverArm(Cause):
         "(position_m); they are then checked."
     )
     correct = "Measure the positions of the sensors and correct position_m; check that no two sensors are exchanged."
-    """What to do where the turns contradict a stated position."""
+    """Advice where the turns contradict a stated position."""
 
     def lever_sentence(self, sensor: str, distance: str) -> str:
         """The sentence with the size: ``A2 is 4.1 ± 0.4 cm from the turn axis and measures the rotation.``"""

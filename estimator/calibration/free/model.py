@@ -37,7 +37,7 @@ WEIGHTLESS = 100.0
 
 @dataclass(frozen=True, eq=False)
 class ModelRows:
-    """What was measured, dimensionless. R orientations, m accelerometers."""
+    """The measurements, dimensionless. R orientations, m accelerometers."""
 
     y: Array
     """(R, m) readings over nominal scale times g, nominal offset taken off."""
@@ -73,7 +73,7 @@ class ModelRows:
 
 @dataclass(frozen=True, eq=False)
 class Unknowns:
-    """What the search looks for, at one point of its way: parameters of m sensors and R orientations; dimensionless."""
+    """The unknowns at one point of the search: parameters of m sensors and R orientations; dimensionless."""
 
     log_scale: Array
     """(m,) λ"""
