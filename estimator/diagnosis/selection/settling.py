@@ -54,7 +54,7 @@ CHANGED = 1e-3
 SUSPECTS = 3
 """Sensors, by either measure, of which it is asked whether they have changed."""
 STEPS = 25
-"""Of the multiples: each brings what is nothing to a half or less."""
+"""Steps for the multiples: each reduces a multiple that should be zero to a half or less."""
 SCALE, ZERO, SQUARE, AXES = [0], [1], [2], [3, 4]
 PARTS = (SCALE, SQUARE, AXES)
 """Parameters that have one spread, by their places; what all scale factors have in common is no part of it."""
@@ -66,7 +66,7 @@ class Settling:
 
     cause: SensorCause
     shapes: tuple[Shape, ...]
-    """Of every sensor that follows; the first bears how the whole changes with the nonlinear parameter, if it does."""
+    """Shapes of every sensor that follows; the first has the derivative by the nonlinear parameter, if there is one."""
     size: Array
     """(k,) β, m/s² (rad/s)."""
 
@@ -89,7 +89,7 @@ class Settling:
         return replace(fitted, session=whole, residual=fitted.residual + effect, course=effect), earlier
 
     def holds_in(self, setting: Setting) -> bool:
-        """Whether it shows how far another session had settled."""
+        """Whether it tells how far another session had settled."""
         return self.cause.since_power_on and setting.switched_on is not None and self.cause.available(setting)
 
     def left_free(self, session: Baseline) -> Baseline:
@@ -108,7 +108,7 @@ def settling(sessions: list[Baseline], catalogue: tuple[Cause, ...]) -> list[Set
 
 
 def settling_in(session: Baseline, catalogue: tuple[Cause, ...]) -> Settling | None:
-    """The same of one session."""
+    """The shared course of one session by itself; None where there is none."""
     residuals = WhitenedResiduals.of(session)
     fits = p_value(float(residuals.z @ residuals.z), max(residuals.freedom, 1)) > FITS
     if len(session.unstated) < 2 or (fits and not session.unstated.any()):
@@ -153,7 +153,7 @@ class Comparable:
 
     @classmethod
     def of(cls, session: Baseline, own: Settling | None, known: Sequence[Settling]) -> "Comparable":
-        """With its ``own`` course and all that are ``known`` of the unit."""
+        """The session with its ``own`` course and all that are ``known`` of the unit."""
         offsets = [c.offset(session.setting) for c in known if c is own or c.holds_in(session.setting)]
         reach = np.max([np.zeros(len(session.unstated)), *offsets], axis=0)
         return cls(session if own is None else own.left_free(session), reach, own is not None)
@@ -215,15 +215,15 @@ def at_places(value: Array, places: Sequence[int]) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Difference:
-    """What two sessions tell of how the parameters of one lie off those of the other, P of them in standard errors."""
+    """Difference between the parameters of two sessions, P of them in standard errors."""
 
     information: Array
-    """(P, P) of its noise; none along what neither tells."""
+    """(P, P) information of its noise; none along directions that neither session sees."""
     score: Array
     """(P,) information times difference."""
 
     def without(self, directions: Array) -> "Difference":
-        """What is known of the rest where nothing is known along ``directions`` (P, k)."""
+        """The difference with everything along ``directions`` (P, k) taken as unknown."""
         along = self.information @ directions
         kept = along @ np.linalg.pinv(directions.T @ along, hermitian=True)
         return Difference(self.information - kept @ along.T, self.score - kept @ (directions.T @ self.score))

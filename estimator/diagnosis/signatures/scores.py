@@ -59,7 +59,7 @@ class ScoreFit:
     """S signatures of q amplitudes, each fitted alone to what the findings leave. K parts of the rows."""
 
     products: Products | RemainingProducts
-    """Of what the findings leave."""
+    """Products with the findings projected out."""
     value: Array
     """(S, q) amplitudes, in the causes' SI units."""
     power: Array
@@ -160,7 +160,7 @@ class Scores:
         )
 
     def group(self, k: int) -> Group:
-        """What is named."""
+        """The group of the k-th shape: its cause and the number of its sensor."""
         return self.traces[self.cause[k]].cause.identifier, (() if self.sensor[k] < 0 else (int(self.sensor[k]),))
 
     def ranked(self) -> list[tuple[int, float]]:

@@ -1,4 +1,4 @@
-"""Every zero wanders by itself, or the block turns: what an event that sensors share is held against.
+"""Rivals of an event that sensors share: every zero wanders by itself, or the block turns.
 
 Theory
 ------
@@ -47,7 +47,7 @@ class Wandering:
 
     @classmethod
     def of(cls, residuals: WhitenedResiduals, waves: Array) -> "Wandering":
-        """Of every sensor the same ``waves`` (R, w), dimensionless, in its standard errors."""
+        """The wandering in which every sensor has the same ``waves`` (R, w), dimensionless, in its standard errors."""
         variance = residuals.baseline.variance
         rows, m = variance.shape
         columns = np.zeros((rows, m, m, waves.shape[1]))
