@@ -8,7 +8,7 @@ from estimator.message import say, say_count
 
 
 def moment(stated: str) -> datetime:
-    """What a text states, in UTC; without an offset it is UTC.
+    """Reads a moment into UTC; without an offset it is UTC.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What a host gets wrong that turns readings into a vector by the nominal numbers, as a matrix and an offset.
+"""Errors of a host that turns readings into a vector by the nominal numbers, as a matrix and an offset.
 
 Theory
 ------
@@ -26,7 +26,7 @@ from estimator.session import Array, CalibrationSession
 
 @dataclass(frozen=True, eq=False)
 class NominalVector:
-    """How the vector of the nominal numbers differs from the true one, for the sensors of one kind."""
+    """Difference between the vector by the nominal numbers and the true one, for the sensors of one kind."""
 
     kind: str
     matrix: Array
@@ -65,7 +65,7 @@ def nominal_vectors(session: CalibrationSession, block: BlockCorrection, reading
 
 
 def nominal_vector(session: CalibrationSession, block: BlockCorrection) -> NominalVector:
-    """What the nominal numbers of a session get wrong, by the correction of its sensors of one kind.
+    """The errors of a session's nominal numbers, by the correction of its sensors of one kind.
 
     Raises
     ------

@@ -34,7 +34,7 @@ DRIFT = (1, 2, 3)
 OWN = 3.0
 """Times, in sigma, that one sensor may be noisier than the others before it is suspected."""
 FAINT = 0.25
-"""Of a block's noise, in variance; as much of longer memory any sensor may have."""
+"""Variance of longer memory that any sensor may have, as a part of a block's noise."""
 ACTIVE = 1 / 3
 """Part of the blocks in which the vector changes most."""
 BESIDE = 7
@@ -159,7 +159,7 @@ def stirred(beside: Array, variance: Array, activity: Array, most: float) -> flo
 
 
 def course_of(ledger: Ledger, norm: float | None, rate: float) -> ParityCourse | None:
-    """Of a recording; None where too little of it can be used.
+    """The course of a recording; None where too little of it can be used.
 
     Parameters
     ----------

@@ -29,7 +29,7 @@ RAIL_SAMPLES = 10
 """Samples at one extreme reading from which it may be the end of the converter's range."""
 
 RAIL_PEAK = 5
-"""How many times more often it must stand than the reading next to it; the tail of noise falls more gently."""
+"""Least ratio of samples at the end of a range to those at the next reading; the tail of noise falls more gently."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +94,7 @@ class Blocks:
         share = right["samples"] / samples
 
         def mean(name: str) -> Array:
-            """Of both halves, by their samples."""
+            """Mean over both halves, weighed by their samples."""
             weight = share.reshape(-1, *[1] * (left[name].ndim - 1))
             return np.asarray((1.0 - weight) * left[name] + weight * right[name])
 

@@ -1,4 +1,4 @@
-"""What motion does to the sensors of a block that are sound: lever arms, delays, vibration, in the means of blocks.
+"""Effects of motion on sound sensors of a block, in the means of blocks: lever arms, delays, vibration.
 
 A sensor with axis e at r, whose samples come τ late, feels
 
@@ -64,7 +64,7 @@ class ParityNuisance:
 def nuisance_of(
     blocks: Blocks, rest: Mask, reference: ParityReference, norm: float | None, rate: float | None, *, arms: bool = True
 ) -> ParityNuisance:
-    """Of the blocks of a recording.
+    """The nuisance in the blocks of a recording.
 
     Parameters
     ----------

@@ -39,7 +39,7 @@ WRONG_SENSOR = 0.01
 NAMED = 5
 """Sensors that name one; two need one more."""
 LATE = 0.85
-"""Of the critical z, which lateness needs: onsets alone are tried, and the larger noise of two is taken."""
+"""Factor on the critical z for lateness: onsets alone are tried, and the larger noise of two is taken."""
 ASKEW = 0.03
 """The same of lateness, which bias, load and clipped samples do not bend."""
 FOLLOWED = 4.0
@@ -63,7 +63,7 @@ class Looked:
 
 
 def faults_of(ledger: Ledger, norm: float | None, rate: float | None) -> Looked:
-    """Of a recording.
+    """Searches a recording for faults.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ class Search:
     rate: float
     """Hz"""
     complete: bool
-    """Whether no sensor has been left out, so that what blocks hold of flutter and delay is theirs alone."""
+    """Whether no sensor has been left out, so that flutter and delay in the blocks are those of its sensors alone."""
 
     def next(self) -> tuple[list[CourseFault], list[int]]:
         """Faults that begin, and the sensors that they take, by number."""

@@ -1,4 +1,6 @@
-"""What a recording is compared with: the calibrated sensors, their parity space, how a change of one shows there."""
+"""The reference of a recording: the calibrated sensors, their parity space, and the trace of one sensor's change
+there.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -19,7 +21,7 @@ LEAST_VISIBLE = 1e-6
 """Share of a sensor that shows in parity; of less the others say nothing of it."""
 QUADRATIC = ELEMENTS.index("quadratic")
 NEEDED = ("scale", "bias", "axis")
-"""What the reference must know of a sensor that takes part."""
+"""Parameters that the reference must hold of a sensor for it to take part."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,7 +137,7 @@ def reference_of(sensors: Sequence[Sensor], calibration: Calibration, kind: str)
 
 
 def too_few(used: int, present: int, kind: str) -> str:
-    """Why there is no parity."""
+    """The reason why there is no parity, as a message."""
     if present >= FEWEST:
         parts = {"used": used, "present": present, "kind": kind, "fewest": FEWEST}
         return say(

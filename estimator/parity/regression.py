@@ -35,7 +35,9 @@ SLOWEST = 0.9
 """Largest correlation of neighbouring groups that is believed."""
 
 LEAST_DOF = (4.0, 2.0, 16.0)
-"""Of the noise, however slow it is: the first and the second times d, at most the third; more sensors tell more."""
+"""Least degrees of freedom of the noise, however slow it is: d times the first and the second number, but at most the
+third; more sensors determine it better.
+"""
 
 APART = 0.01
 """Relative eigenvalue of P∘P below which sensors are not distinguished; it matters as much as its square root."""
@@ -46,7 +48,7 @@ DRAWN = 6.0
 
 @dataclass(frozen=True, eq=False)
 class ParityChange:
-    """What parity says of the sensors' change since the reference. d = m − 3, s excited directions, q = s·d."""
+    """The sensors' change since the reference, in parity space. d = m − 3, s excited directions, q = s·d."""
 
     reference: ParityReference
     norm: float
@@ -64,9 +66,9 @@ class ParityChange:
     dof: float
     """Groups less what was fitted to each sensor."""
     residual_rms: float
-    """Of the parity vector's elements after the fit, block means, m/s² (rad/s)."""
+    """Root mean square of the parity vector's elements after the fit, block means, m/s² (rad/s)."""
     quadratic: Array
-    """(m, s) how a² runs along z: what a change of c looks like, (m/s²)²."""
+    """(m, s) regression of a² on z: the trace of a change of c, (m/s²)²."""
     course: Array
     """(groups, m) means over the groups of V·p, m/s² (rad/s)."""
     course_sigma: Array
@@ -79,7 +81,7 @@ class ParityChange:
 
     @property
     def complete(self) -> bool:
-        """Whether bias and scale can be distinguished: all four of (1, n) are excited."""
+        """Whether bias and scale can be told apart: all four of (1, n) are excited."""
         return self.excited.shape[1] == 4
 
     def signature(self, sensor: int, rows: Array) -> Array:

@@ -66,12 +66,13 @@ class SettlingCourse:
     scatter: Array
     """(C,) sum of squares that is left, (m/s²)² or (rad/s)²."""
     freedom: int
-    """Degrees of freedom of it."""
+    """Degrees of freedom of the scatter."""
 
 
 def courses(time: Array, value: Array, place: Array, count: Array, wide: Array) -> tuple[SettlingCourse, ...]:
-    """Of every column of ``value`` (n, m), m/s² or rad/s, at ``time`` (n,), s; ``place`` (n,) numbers of positions,
-    ``count`` (n,) samples; ``wide`` (m,) one sigma of the priors of d and a, m/s² or rad/s."""
+    """The courses of every column of ``value`` (n, m), m/s² or rad/s, at ``time`` (n,), s; ``place`` (n,) numbers of
+    positions, ``count`` (n,) samples; ``wide`` (m,) one sigma of the priors of d and a, m/s² or rad/s.
+    """
     t = time - time[0]
     span = float(t[-1])
     numbers, members = np.unique(place, return_inverse=True)
@@ -123,7 +124,7 @@ def _whitened(t: Array, count: Array, walk: float, Z: Array, X: Array, value: Ar
 
 @dataclass(frozen=True, eq=False)
 class _Cells:
-    """Of one ρ: every settling (first axis) and sensor (second)."""
+    """The cells of one ρ: every settling (first axis) and sensor (second)."""
 
     evidence: Array
     mean: Array
@@ -187,7 +188,7 @@ def wander(course: SettlingCourse, duration: float) -> float:
 
 
 def _variance(course: SettlingCourse, cell: int, means: int, growth: float, duration: float) -> float:
-    """Of the forecast, (m/s²)² or (rad/s)², by a record ``growth`` times as long."""
+    """Variance of the forecast, (m/s²)² or (rad/s)², by a record ``growth`` times as long."""
     span, tau, walk = growth * course.span, course.tau[cell], course.walk[cell] * growth**2
     sigma2 = course.scatter[cell] / course.freedom / growth
     x = (np.arange(means) + 0.5) / means

@@ -18,7 +18,7 @@ from estimator.session import Array, CalibrationSession
 REFERENCE = 20.0
 """°C, the reference temperature of measurement (ISO 1), where the session covers it; else the middle of its range."""
 HIGHEST_ORDER = 4
-"""Of a polynomial: IEEE Std 1293 and 952 are content with three or four."""
+"""Highest order of a polynomial: IEEE Std 1293 and 952 are content with three or four."""
 APART = 2.0
 """°C between two levels of temperature: a chamber holds a soak closer than that."""
 NARROWEST = 10.0
