@@ -45,7 +45,7 @@ TOLERANCES = {
     (ACCELEROMETER, "scale"): 100e-6,
     (ACCELEROMETER, "axis"): 20 * ARCSEC,
 }
-"""Those that hold until an engineer sets others."""
+"""Tolerances that hold until an engineer sets others."""
 ROOM, WARM = 20.0, 35.0
 COLDEST, WARMEST = 10.0, 37.0
 """°C between which the sessions before are measured."""
@@ -62,20 +62,20 @@ FEW = 100
 
 @dataclass(frozen=True)
 class Answer:
-    """What is said of one unit at `WARM` by laws learned from some sessions."""
+    """The answer to one unit at `WARM` by laws learned from some sessions."""
 
     by_law: bool
     """Whether it was called unfit at the reference's temperature."""
     undecided: bool
     """Whether it was neither fit nor unfit then."""
     covered: tuple[bool, ...]
-    """Of each parameter that something was taken off of, whether U covers what is left: nothing moved."""
+    """For each corrected parameter, whether U covers what is left: nothing moved."""
     shares: tuple[float, ...]
-    """Of each of them, U in tolerances."""
+    """For each of them, U in tolerances."""
     found: bool
     """Whether a sensor whose bias has moved by 150 µg is called unfit by the law, for its bias."""
     excused: bool
-    """Whether it passes, having moved when the room became warmer for good."""
+    """Whether a sensor passes that moved when the room became warmer for good."""
 
 
 @dataclass(frozen=True)
@@ -85,9 +85,9 @@ class Judged:
     as_measured: bool
     """Whether it was called unfit without a law."""
     own: Answer
-    """By its own sessions."""
+    """The answer by its own sessions."""
     typed: Answer
-    """With the laws of its type."""
+    """The answer with the laws of its type."""
 
 
 def law_of(kind: str, rng: np.random.Generator) -> Array:
@@ -124,13 +124,13 @@ class Scene:
     moved: Seen
     """The last one of a unit of which one bias moved before it."""
     name: str
-    """Of that sensor."""
+    """Name of that sensor."""
     stayed: tuple[Seen, ...]
-    """Of a unit whose bias moved when the room became warmer for good; empty where that is not asked."""
+    """Sessions of a unit whose bias moved when the room became warmer for good; empty where that is not asked."""
 
 
 def learned_laws(kind: str, seed: int) -> tuple[TypeLaw, ...]:
-    """Of a type whose units follow one kind of law."""
+    """The laws of a type whose units follow one kind of law."""
     return type_laws([_other(kind, (seed, 99, i)) for i in range(TYPE_UNITS)], TOLERANCES)
 
 
@@ -212,7 +212,7 @@ Answers = dict[tuple[str, int], list[Judged]]
 
 
 def rows(answers: Answers) -> Iterator[tuple[str, ...]]:
-    """Of the table."""
+    """Rows of the table."""
     for (kind, learned), units in answers.items():
         as_measured = str(rate([one.as_measured for one in units]))
         for whose, said in (("–", [one.own for one in units]), (str(TYPE_UNITS), [one.typed for one in units])):

@@ -20,7 +20,7 @@ class Group:
 
     recording: str
     words: str
-    """Which sensors."""
+    """Description of the sensors."""
     means: CalibrationSession
     log: CalibrationSession | None = None
     """The same sensors before averaging; None where the recording begins with means."""

@@ -19,9 +19,9 @@ FIRST_STEP = 0.01
 """Dimensionless: 1 % of scale, 0.01 g, 0.01 rad, the size of the errors that are looked for."""
 
 GROW = 2.0
-"""Of a parameter's step where it lowered the functional; see above."""
+"""Factor on a parameter's step where it lowered the functional; see above."""
 SHRINK = 0.5
-"""Of a parameter's step where neither side did; see above."""
+"""Factor on a parameter's step where neither side lowered it; see above."""
 
 STILL = 1e-12
 """Steps below this are rounding."""
@@ -32,7 +32,7 @@ MOST_ITERATIONS = 20_000
 
 @dataclass(frozen=True, eq=False)
 class Search:
-    """Where a search on the triples functional ended, and how it went there."""
+    """The end of a search on the triples functional, and its path."""
 
     x: Array
     """(P,) δk, b/g, α, β of `Triples`; relative, rad."""
@@ -42,7 +42,7 @@ class Search:
     iterations: int
     """Passes over all parameters; for Levenberg–Marquardt, Jacobians."""
     evaluations: int
-    """Of the functional."""
+    """Evaluations of the functional."""
     converged: bool
     path: Array
     """(iterations, P) where each iteration ended, as `x`; only the last for Levenberg–Marquardt."""

@@ -94,7 +94,7 @@ def two_planes(count: int) -> Array:
 
 
 def orientation_sets() -> str:
-    """Which sets of orientations identify everything."""
+    """Sets of orientations, and what each identifies."""
     drawn = np.random.default_rng(5).standard_normal((24, 3))
     sets = [
         ("six faces", np.concatenate([np.eye(3), -np.eye(3)])),

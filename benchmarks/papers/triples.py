@@ -37,7 +37,7 @@ FLATTEST = 0.05
 
 @dataclass(frozen=True, eq=False)
 class Triples:
-    """What the functional is made of. R orientations, m sensors, T triples, P = 4 m − 3 parameters."""
+    """Data of the functional. R orientations, m sensors, T triples, P = 4 m − 3 parameters."""
 
     u: Array
     """(R, m) readings over nominal scale, m/s²."""

@@ -1,4 +1,4 @@
-"""What is named when the standard errors in the file are wrong, of one sensor, some or all, too large or too small."""
+"""Names given when the standard errors in the file are wrong, of one sensor, some or all, too large or too small."""
 
 import json
 from collections.abc import Iterator
@@ -45,7 +45,7 @@ class Wish:
 
 @dataclass(frozen=True)
 class Answer:
-    """What was said of it."""
+    """The answer to one session."""
 
     wish: Wish
     other_name: bool

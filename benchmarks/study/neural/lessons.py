@@ -1,4 +1,4 @@
-"""What the network learns from: sessions and effects of the study's generator, noise as fast as it is drawn.
+"""Training data of the network: sessions and effects of the study's generator, noise as fast as it is drawn.
 
 A session is drawn, measured once, read and fitted as in a diagnosis. Effects in it are the generator's, each as the
 difference that it makes to the readings, whitened and freed of what the baseline absorbs; residuals are these times a
@@ -55,7 +55,7 @@ class Lesson(NamedTuple):
 
 
 def lesson(rng: np.random.Generator, own: tuple[str, ...], shared: tuple[str, ...]) -> Lesson:
-    """Of a session that holds what some cause needs; drawn anew where no effect shows."""
+    """Draws a session that meets the needs of some cause, with effects; drawn anew where no effect shows."""
     session = draw_session(rng, CATALOGUE[str(rng.choice([*own, *shared]))].needs)
     read = read_session(session_file(session, measure(session, [], rng)[0]))
     residuals = WhitenedResiduals.of(baseline_of(averaged(read)))
@@ -106,7 +106,7 @@ def label(cause: str, sensor: int, m: int, own: tuple[str, ...], shared: tuple[s
 
 
 def filled(whole: Lesson, R: int, m: int) -> Lesson:
-    """With zeros, up to R rows and m sensors."""
+    """The lesson with zeros up to R rows and m sensors."""
     p, F = 5 * m + 3, whole.design.known.shape[-1]
     shapes = Design((m, R, F), (m, R, p), (m, R), (R,), (m, R), (m, R, 5), (m, R))
     design = Design(*(fill(x, shape) for x, shape in zip(whole.design, shapes, strict=True)))

@@ -29,7 +29,7 @@ ROWS = 72
 STEEP = 5.0
 """The strength for which a moved kernel's outputs are averaged over its places."""
 ABSORBED = 1e-4
-"""Of a signature's square: less that the baseline leaves counts as nothing."""
+"""Least share of a signature's square that the baseline must leave for it to count."""
 LAGS = (0.1, 0.4)
 """Time constants of late temperatures, of the session's length."""
 SIGNATURES, HIDDEN = 64, 96
@@ -37,7 +37,7 @@ SIGNATURES, HIDDEN = 64, 96
 
 
 class Design(NamedTuple):
-    """What is known of a session beside its residuals."""
+    """Features of a session beside its residuals."""
 
     known: Array
     """(m, R, F) of every reading: how it was held, when, how warm; 0 where the file does not say."""
@@ -56,7 +56,7 @@ class Design(NamedTuple):
 
 
 def design_of(residuals: WhitenedResiduals) -> Design:
-    """Of a fitted session on a stand."""
+    """The features of a fitted session on a stand."""
     R, m = residuals.baseline.residual.shape
     direction, removed = residuals.whiten.direction[..., 0], residuals.whiten.removed[:, 0]
     root = residuals.whiten.weight * np.sqrt(1 - (removed * (2 - removed))[:, None] * direction**2)
@@ -93,7 +93,7 @@ def of_rows(setting: Setting) -> Array:
 
 
 def standard(values: Array) -> Array:
-    """Of each column less its mean, in its standard deviation; 0 of a constant."""
+    """Each column less its mean, in its standard deviation; 0 for a constant."""
     spread = values.std(axis=0)
     return (values - values.mean(axis=0)) / np.where(spread > 0, spread, 1.0)
 
@@ -134,7 +134,7 @@ def log_posterior(w: Weights, design: Design, z: Array, xp: ModuleType = np) -> 
 
 
 class Filters(NamedTuple):
-    """What signatures are matched to."""
+    """Filters that signatures are matched to."""
 
     v: Array
     """(d, m, n, R) residuals weighted by the inverse of their covariance."""
@@ -147,7 +147,7 @@ class Filters(NamedTuple):
 
     @classmethod
     def of(cls, design: Design, z: Array, xp: ModuleType) -> "Filters":
-        """As in `log_posterior`."""
+        """The filters, from arguments as in `log_posterior`."""
         removed, direction = design.removed[:, None, :, None], design.direction[..., None]
         both = xp.concatenate([z.swapaxes(-1, -2), design.basis], axis=-1)
         size = 1 / xp.sqrt(1 - removed * (2 - removed) * direction**2)
@@ -201,10 +201,10 @@ def bent(x: Array, xp: ModuleType) -> Array:
 
 
 class Answer(NamedTuple):
-    """What the network says of a session."""
+    """The network's answer to a session."""
 
     log_odds: float
-    """That something acts."""
+    """Log odds that something acts."""
     cause: str
     """The likeliest, if something does."""
     sensor: int | None = None
@@ -212,7 +212,7 @@ class Answer(NamedTuple):
 
 
 def answer(file: Path, residuals: WhitenedResiduals) -> Answer:
-    """By weights as ``python -m benchmarks.study.neural`` writes them."""
+    """The answer by weights as ``python -m benchmarks.study.neural`` writes them."""
     w, m = weights(file), residuals.baseline.residual.shape[1]
     z = residuals.z[: residuals.baseline.residual.size].reshape(-1, m).T
     found = log_posterior(w, Design(*(x[None] for x in design_of(residuals))), z[None, :, None])[0, 0]
@@ -225,7 +225,7 @@ def answer(file: Path, residuals: WhitenedResiduals) -> Answer:
 
 @lru_cache
 def weights(file: Path) -> Weights:
-    """With the names of the causes and how they were learned."""
+    """The weights, with the names of the causes and the record of the training."""
     with np.load(file) as stored:
         return dict(stored)
 
