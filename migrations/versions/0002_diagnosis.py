@@ -21,7 +21,7 @@ KEYS = {
 }
 """Primary keys, with the revision that is new in them."""
 VERDICT = ("verdict", "reason", "worst_sensor", "worst_parameter", "margin")
-"""What a calibration led to; until now only the session said it."""
+"""Columns of the verdict that a calibration led to; until now only the session stored it."""
 
 
 def upgrade() -> None:

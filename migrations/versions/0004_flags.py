@@ -1,4 +1,4 @@
-"""Who did a service and on which sensor, notes, stages of sessions, flags with their notices, webhooks with an outbox.
+"""Person and sensor of a service, notes, stages of sessions, flags with their notices, webhooks with an outbox.
 
 Revision: 0004, after 0003
 """
@@ -31,7 +31,7 @@ def upgrade() -> None:
 
 
 def downgrade() -> None:
-    """Of several services of one kind at one moment on several sensors the first one stays."""
+    """The first service stays where several were of one kind at one moment on several sensors."""
     for table in ("deliveries", "webhooks", "notices", "flags", "note_withdrawals", "notes"):
         op.drop_table(table)
     if op.get_bind().dialect.name == "postgresql":

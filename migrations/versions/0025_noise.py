@@ -1,4 +1,4 @@
-"""What the rests of a session say of its sensors' noise: the curve, beside the terms, which are parameters.
+"""Noise of a session's sensors from its rests: the curve, beside the terms, which are parameters.
 
 Revision: 0025, after 0024
 """
