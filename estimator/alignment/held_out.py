@@ -55,6 +55,7 @@ def prediction(arms: LeverArms, *, named: bool) -> HeldOutPrediction:
 
 
 def root_mean_square(errors: Array) -> float:
+    """Root mean square of errors (n,), m/s²."""
     return float(np.sqrt(np.mean(errors**2)))
 
 

@@ -18,7 +18,7 @@ ONE_RUN = 0.15
 
 @dataclass(frozen=True)
 class Arrangement:
-    """Which kinds of sensors a block holds."""
+    """Kinds of sensors in a block."""
 
     accelerometers: int
     gyros: int

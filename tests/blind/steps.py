@@ -24,7 +24,7 @@ SHOWN = 0.4
 
 @dataclass(frozen=True)
 class Block:
-    """What is measured."""
+    """Block and programme to measure."""
 
     name: str
     accelerometers: int = 0
@@ -49,11 +49,13 @@ class Stepped:
     rows: tuple[int, ...]
     """The first after the step of every one of the sensors, counted from 1."""
     size: tuple[float, ...]
-    """Of every one of the sensors, m/s² or rad/s."""
+    """Step of every one of the sensors, m/s² or rad/s."""
 
 
 def draw_steps(block: Block, strengths: Array, rng: np.random.Generator, *, apart: bool = False) -> Stepped:
-    """So many sensors step by ``strengths`` (k,) standard errors each; ``apart``: each at a row of its own."""
+    """A session in which so many sensors step by ``strengths`` (k,) standard errors each; ``apart``: each at a row of
+    its own.
+    """
     world, up = session_of(block, rng), directions(rng)
     rows, m = world.schedule.rows if block.stand else ORIENTATIONS, world.unit.size
     sensors = np.sort(rng.choice(m, len(strengths), replace=False))
@@ -73,7 +75,7 @@ def draw_steps(block: Block, strengths: Array, rng: np.random.Generator, *, apar
 
 
 def draw_others(block: Block, kind: str, strength: float, rng: np.random.Generator) -> Stepped:
-    """What may look like a step of all zeros and is none, of so many standard errors: ``kind`` of `OTHERS`."""
+    """An effect that resembles a step of all zeros, of so many standard errors: ``kind`` of `OTHERS`."""
     world, up = session_of(block, rng), directions(rng)
     rows, m = world.schedule.rows if block.stand else ORIENTATIONS, world.unit.size
     added = OTHERS[kind](world, rows, rng)

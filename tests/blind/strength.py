@@ -1,4 +1,4 @@
-"""How strong a signature is in a session: what the baseline and the stand's common errors leave of it, whitened.
+"""Strength of a signature in a session: the part that baseline and common stand errors leave, whitened.
 
 The covariance of all readings holds the noise of each reading, the β error that all sensors of a row share and the
 stand's constant errors that all readings share. Derivatives are numerical, of our own physics.
@@ -71,7 +71,7 @@ def _stand_column(session: Session, which: int) -> Array:
 
 
 class Lens:
-    """What a session sees: columns of readings → what is left of them, in standard errors of a reading."""
+    """View of a session: columns of readings → the part left of them, in standard errors of a reading."""
 
     def __init__(self, session: Session, prior: Array | None = None):
         """``prior`` (p, 5m): root of the information that other sessions or the maker give on the parameters."""

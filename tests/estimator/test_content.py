@@ -1,4 +1,4 @@
-"""What is worked out once for a session's content."""
+"""Results worked out once for a session's content."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace

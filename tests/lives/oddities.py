@@ -1,4 +1,4 @@
-"""What a session file may have, lack or say in another way, and be legal all the same."""
+"""Oddities of a session file that are legal all the same: additions, omissions and other spellings."""
 
 from collections.abc import Callable
 from datetime import datetime, timedelta, timezone
@@ -91,4 +91,4 @@ ODDITIES: dict[str, Change] = {
     "simulated": _says(origin="simulated"),
 }
 RARE = ("simulated", "no type", "no date")
-"""What makes another unit or another life of most that follows."""
+"""Oddities that turn most of the later sessions into another unit's or another life's."""

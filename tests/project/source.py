@@ -39,7 +39,7 @@ class Module:
 
 
 def statements(node: ast.AST) -> Iterator[ast.AST]:
-    """Those inside, at every depth, without their expressions, which are most of a tree."""
+    """Statements inside, at every depth, without their expressions, which are most of a tree."""
     for name in ("body", "handlers", "orelse", "finalbody", "cases"):
         for inner in getattr(node, name, ()):
             yield inner

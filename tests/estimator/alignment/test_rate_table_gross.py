@@ -114,7 +114,7 @@ def test_turns_in_which_a_gyro_stood_still_measure_nothing() -> None:
 
 @pytest.mark.parametrize("upright", [False, True])
 def test_a_table_that_takes_time_to_reach_its_rate_is_no_sensors_fault(upright: bool) -> None:
-    """Of a block with one gyro along the turn axis nobody else shows it."""
+    """In a block with one gyro along the turn axis no other sensor shows it."""
     sound = table(np.random.default_rng(6), 4)
     sensors = tuple(replace(s, nominal_axis=np.eye(3)[i % 3]) if upright else s for i, s in enumerate(sound.sensors))[
         : 3 if upright else 4

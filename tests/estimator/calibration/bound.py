@@ -19,7 +19,7 @@ from tests.estimator.calibration.cases import Case
 
 CONSTANT = ("theta_x", "theta_y", "alpha", "latitude", "meridian", "count_time")
 PLAUSIBLE = 0.1
-"""What an element could be at all, dimensionless: the weak prior that the results state."""
+"""Plausible size of an element, dimensionless: the weak prior that the results state."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,7 +18,7 @@ G = 9.81
 
 @dataclass(frozen=True, eq=False)
 class Truth:
-    """What the sensors really are, in the frame in which their axes show no net turn against the nominal ones."""
+    """True parameters of the sensors, in the frame in which their axes show no net turn against the nominal ones."""
 
     nominal: np.ndarray
     axes: np.ndarray

@@ -59,7 +59,7 @@ def term(added: Callable[["Seen", tuple[float, ...]], tuple[Array, ...]]) -> Act
 
 
 class Seen:
-    """What one sensor goes through, in the letters of the table of causes."""
+    """Quantities at one sensor, in the letters of the table of causes."""
 
     def __init__(self, world: World, i: int):
         session, n = world.session, world.vectors()[:, i]

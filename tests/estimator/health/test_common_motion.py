@@ -18,7 +18,7 @@ TURN = np.array([3.0, 12.0, -4.0]) * ARCSEC
 SIGMA = 0.8 * ARCSEC
 SCALE_SIGMA = 2e-6
 STAND_SCALE = 6e-6
-"""Of one session, relative: each sensor's own, and the stand's."""
+"""One sigma of the stand's scale in one session, relative."""
 CONE = float(np.arccos(1 / np.sqrt(3)))
 
 
@@ -48,7 +48,7 @@ def measured(m: int, rng: np.random.Generator | None, moved: Array | None = None
 
 
 def split(m: int, rng: np.random.Generator | None, moved: Array | None = None, turn: Array = TURN) -> dict[str, Split]:
-    """By quantity, since a reference measured with the same errors."""
+    """The splits by quantity, since a reference measured with the same errors."""
     reference = block(axes_of(m), np.zeros((m, 5)) if rng is None else _errors(m, rng), covariance_of(m), np.zeros(3))
     return {s.motion.quantity: s for s in common_motion(measured(m, rng, moved, turn), reference)}
 
@@ -237,7 +237,7 @@ def test_a_large_turn_has_an_honest_covariance_and_moves_no_sensor() -> None:
 
 @pytest.mark.parametrize("arcsec", [20.0, 7200.0])
 def test_a_sensor_that_tilts_beside_a_large_turn_is_found_and_does_not_drag_it(arcsec: float) -> None:
-    """Of seven; 1.4 arcsec is four sigmas of one axis in both sessions, beyond its own share of noise."""
+    """One of seven; 1.4 arcsec is four sigmas of one axis in both sessions, beyond its own share of noise."""
     for k in range(20):
         turn = turned_by(5.0, k)
         found = split(7, np.random.default_rng([22, k]), tilted(7, 1, arcsec), turn)["axes"]

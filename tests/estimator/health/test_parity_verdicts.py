@@ -1,4 +1,4 @@
-"""What a recording in service says of each parameter: four states for candidates, detectable or not for the others."""
+"""Verdicts on each parameter from a recording in service: four states for candidates, detectable or not for others."""
 
 from dataclasses import replace
 from functools import cache

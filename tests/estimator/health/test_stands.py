@@ -30,7 +30,7 @@ def fleet(rng: np.random.Generator, added: Seating, units: int = 8) -> list[Stan
 
 
 def flagged(found: tuple[StandState, ...]) -> dict[str, StandShift]:
-    """Of every stand that is named its most evident shift."""
+    """The most evident shift of every stand that is named."""
     return {one.stand: one.worst for one in found if one.shifts and one.worst is not None}
 
 

@@ -76,7 +76,9 @@ def test_no_law_is_looked_for_without_a_tolerance() -> None:
 
 @pytest.mark.parametrize("scatter", [0.0, 0.3])
 def test_the_uncertainty_of_a_worth_is_what_it_scatters_by(scatter: float) -> None:
-    """Over draws of noise and of what scatters about the law, of which the session and its reference have their own."""
+    """Over draws of the noise and of the scatter about the law, of which the session and its reference have their
+    own.
+    """
     errors, sigmas, dofs = [], [], []
     for seed in range(25):
         rng = np.random.default_rng(seed)
@@ -93,7 +95,7 @@ def test_the_uncertainty_of_a_worth_is_what_it_scatters_by(scatter: float) -> No
 
 
 def test_a_session_and_its_reference_each_lie_off_the_law_by_what_scatters() -> None:
-    """Of a law that many sessions tell well, √2·τ is left, and of it alone."""
+    """From a law that many sessions determine well, √2·τ is left, and nothing else."""
     found = []
     for seed in range(4):
         rng = np.random.default_rng(seed)

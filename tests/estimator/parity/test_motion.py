@@ -1,4 +1,4 @@
-"""What motion does to sound sensors, and what is said because of it. The flights share no code with the estimator."""
+"""Effects of motion on sound sensors, and the results they lead to. The flights share no code with the estimator."""
 
 from dataclasses import replace
 from functools import cache
@@ -40,7 +40,7 @@ def test_lever_arms_and_delays_name_no_sensor(stated: bool, gyros: bool) -> None
 
 
 def test_some_of_these_flights_would_be_called_changed_if_motion_did_nothing() -> None:
-    """And then it is said that they move too much, with who would have been suspected."""
+    """The result then says that they move too much, with the sensors that would have been suspected."""
     found = [flown(seed, stated=False, gyros=False) for seed in range(4)]
     moving = [r for r in found if r.moving]
     assert moving
@@ -92,7 +92,7 @@ def stream(**changes: Any) -> tuple[ParityAccumulator, Any]:
 
 
 def test_the_delays_are_found() -> None:
-    """In samples; what is common to all of them, along each axis of the block, is motion."""
+    """In samples; delays common to all of them, along each axis of the block, are motion."""
     taken, block = stream(arm=0.0)
     chosen = select(taken.ledger, "any", G, RATE)
     unknown = nuisance_of(chosen.blocks, chosen.rest, taken.reference, G, RATE, arms=False)

@@ -31,7 +31,7 @@ class Epoch:
 
 
 def epochs(life: Life, parameters: int, rng: Random) -> tuple[tuple[Epoch, ...], ...]:
-    """Of every epoch that has two sessions or more, so many parameters of which the first is the one that moves."""
+    """So many parameters, the first of which is the moving one, for every epoch that has two sessions or more."""
     breaks = [0, *(one.day for one in life.services), DAYS[-1] + 1]
     found = []
     for start, end in pairwise(breaks):

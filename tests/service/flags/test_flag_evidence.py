@@ -1,5 +1,6 @@
-"""What diagnoses tell of flags, one session after another: a matter closes when it is no longer found, and comes back
-with it; what is found on a stand is one flag of the stand, from all sessions on it."""
+"""Evidence of diagnoses on flags, one session after another: a matter closes when it is no longer found, and comes back
+with it; a matter of a stand is one flag of the stand, from all sessions on it.
+"""
 
 from datetime import UTC, datetime
 from itertools import permutations

@@ -61,7 +61,7 @@ def serviced(storage: Storage) -> None:
 
 @dataclass(frozen=True)
 class Said:
-    """What is said of a unit's date, wherever it is said."""
+    """Statements about a unit's date, wherever they stand."""
 
     due: date | None
     rule: str
@@ -122,7 +122,7 @@ def test_the_rule_is_said_everywhere_with_its_date(client: httpx.Client, storage
 
 
 def test_the_day_in_the_sentence_sets_the_due_date(client: httpx.Client, storage: Storage) -> None:
-    """Of a risk the day on which it reaches its level; of an interval the day that it is counted from."""
+    """For a risk it is the day on which it reaches its level; for an interval the day that it is counted from."""
     measure(storage, DRIFTS)
     found = said(client)
     assert found.due is not None

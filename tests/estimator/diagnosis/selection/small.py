@@ -64,5 +64,5 @@ def candidate(
 
 
 def names(state: SearchState) -> list[tuple[str, tuple[int, ...]]]:
-    """What was found: causes with their sensors, in order."""
+    """Causes that were found, with their sensors, in order."""
     return sorted(f.best.group for f in state.detections)

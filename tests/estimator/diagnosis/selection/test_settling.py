@@ -20,7 +20,7 @@ ZERO = 1
 
 
 def found_in(life: Life) -> Diagnosis:
-    """Of the last session, with the others as history."""
+    """Diagnosis of the last session, with the others as history."""
     *earlier, last = map(read_session, life.sessions)
     return diagnose(last, earlier)
 
