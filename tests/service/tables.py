@@ -40,7 +40,7 @@ def rows_of(document: Document) -> list[list[Any]]:
 def text_table(
     document: Document, headings: Sequence[str] = HEADINGS, *, separator: str = ";", decimal: str = ","
 ) -> str:
-    """As a spreadsheet writes it where numbers have a decimal comma."""
+    """The table as a spreadsheet writes it where numbers have a decimal comma."""
     out = StringIO()
     out.write(separator.join(f'"{h}"' if separator in h else h for h in headings) + "\r\n")
     for row in rows_of(document):
@@ -87,5 +87,5 @@ def mat_table(document: Document) -> bytes:
 
 
 def facts_of(document: Document) -> Document:
-    """What no table says."""
+    """Facts that no table states."""
     return {key: value for key, value in document.items() if key not in ("format", "table")}

@@ -1,4 +1,4 @@
-"""Groups of the sessions of a unit, a type and a stand: those that count, and the time at which a group is made anew."""
+"""Groups of the sessions of a unit, a type and a stand: the sessions that count, and when a group is made anew."""
 
 import json
 from datetime import UTC, datetime, timedelta

@@ -1,4 +1,4 @@
-"""A change beyond any gravity, stand or sensor is the unit's or a slip: the unit is never fit, with the reason given."""
+"""A change beyond any gravity, stand or sensor is the unit's or a slip: the unit is never fit, and told why."""
 
 import json
 

@@ -41,7 +41,7 @@ NOTHING = Beside()
 
 
 def certificate(client: httpx.Client, id: str = ID) -> bytes:
-    """As XML."""
+    """The certificate as XML."""
     answer = client.get(f"/api/v1/sessions/{id}/certificate?format=dcc")
     answer.raise_for_status()
     return answer.content
@@ -66,7 +66,7 @@ def key_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def seal(key_file: Path) -> Seal:
-    """Of that key."""
+    """Seal of that key."""
     found = seal_of(key_file, None)
     assert found is not None
     return found
@@ -80,7 +80,7 @@ def trusted(key_file: Path) -> bytes:
 
 @pytest.fixture
 def client(settings_holding: SettingsHolding) -> Iterator[httpx.Client]:
-    """Of a laboratory that states everything, with a reference and a session out of tolerance."""
+    """HTTP to a laboratory that states everything, with a reference and a session out of tolerance."""
     with named(settings_holding(*FAILED, diagnosed=True)) as http:
         state_all(http)
         yield http
@@ -215,7 +215,7 @@ def test_the_command_s_exit_code_says_it(run: Run, printed: bytes, tmp_path: Pat
 
 @pytest.mark.slow
 def test_another_build_of_the_linear_algebra_agrees(printed: bytes, tmp_path: Path) -> None:
-    """That of a processor without wide registers, which every other one can run."""
+    """The other build is for a processor without wide registers, which every other one can run."""
     (tmp_path / "c.xml").write_bytes(printed)
     (tmp_path / "s.json").write_bytes(FAILED[-1])
     environment = os.environ | {"OPENBLAS_CORETYPE": "Prescott"}

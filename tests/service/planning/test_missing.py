@@ -1,4 +1,4 @@
-"""What a session still lacks while it is measured, by the API; nothing is stored."""
+"""The rows that a session under way still lacks, by the API; nothing is stored."""
 
 import httpx
 

@@ -1,4 +1,4 @@
-"""What is known of a unit is a function of its accepted records, in whatever order and by whatever detour they came."""
+"""The state of a unit is a function of its accepted records, in whatever order and by whatever detour they came."""
 
 import json
 from collections.abc import Callable
@@ -92,7 +92,7 @@ ORDERS = st.permutations([*MOVED, "service"]).flatmap(
 
 
 def known(databases: Databases, folder: Path, order: Any) -> dict[str, Any]:
-    """What is known after an order of arrivals."""
+    """The state after an order of arrivals."""
     with ExitStack() as stack:
         url = databases.migrated()
         stack.callback(databases.drop, url)

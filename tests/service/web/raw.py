@@ -10,7 +10,7 @@ from tests.patience import LONG
 
 @dataclass(frozen=True)
 class Answer:
-    """What came back until the connection was closed."""
+    """Bytes that came back until the connection was closed."""
 
     status: int
     head: str
