@@ -116,9 +116,7 @@ def stand_vector(elevation: float, beta: Array, errors: StandErrors | None = Non
 
 @dataclass(frozen=True)
 class Schedule:
-    """Everything in a session on a stand that its geometry depends on, comparable and hashable by content: no
-    reading.
-    """
+    """Facts of a session on a stand that determine its geometry, comparable and hashable by content; no readings."""
 
     site: Site
     stand: Stand

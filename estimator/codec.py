@@ -261,7 +261,7 @@ class _Place:
     has_default: bool
 
     def value_in(self, document: Any) -> Any:
-        """Its value; MISSING where the document lacks it and it has a default."""
+        """The field's value; MISSING where the document lacks it and it has a default."""
         for key in self.path:
             if not isinstance(document, Mapping) or key not in document:
                 if self.has_default:

@@ -102,7 +102,7 @@ class BlockCorrection:
 
 @dataclass(frozen=True, eq=False)
 class Correction:
-    """Everything that a calibration corrects, and whom it cannot."""
+    """The corrections that a calibration gives, and the sensors that it cannot correct."""
 
     blocks: tuple[BlockCorrection, ...]
     """One a kind of sensor whose axes span all three directions."""

@@ -44,7 +44,7 @@ class SensorCurves(Document):
     name: str
     bias: Curve
     scale: Curve | None = None
-    """None where the session does not show it, as of gyros at rest."""
+    """Curve of the scale factor; None where the session does not show it, as for gyros at rest."""
     cross: Array | None = None
     """(q, q) covariance of the scale factor's coefficients with the bias'."""
 
@@ -70,7 +70,7 @@ class ThermalFinding(Document):
 
 @dataclass(frozen=True, eq=False)
 class ThermalCurves(Document):
-    """Everything that a thermal programme says over temperature."""
+    """Results of a thermal programme over temperature."""
 
     reference_temperature: float
     """T₀, °C."""

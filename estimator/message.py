@@ -13,11 +13,11 @@ from typing import Any
 from estimator.json_object import Json
 
 PLACE = re.compile(r"\{(\w+)\}")
-"""Where a part stands in a template."""
+"""Place of a part in a template."""
 PLACES = re.compile(r"(\{\w+\})")
 MARK = "message"
 KEYS = frozenset((MARK, "parts", "many", "number"))
-"""Under which JSON keeps a message."""
+"""Keys under which JSON keeps a message."""
 NO_PARTS: Mapping[str, str] = MappingProxyType({})
 
 
@@ -54,7 +54,7 @@ class Message(str):
         return joined("", (other, self))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """For copies and for other processes."""
+        """Pickles the message for copies and for other processes."""
         return Message, (self.template, dict(self.parts), self.many, self.number)
 
 
@@ -139,7 +139,7 @@ def _texts(parts: Mapping[str, object]) -> dict[str, str]:
 
 
 def _begun(text: str, change: Callable[[str], str]) -> str:
-    """With another first letter."""
+    """The text with another first letter."""
     if not isinstance(text, Message):
         return change(text[:1]) + text[1:]
     if first := PLACE.match(text.template):

@@ -55,7 +55,7 @@ class KnownCombination:
     coefficients: dict[str, float]
     value: float
     sigma: float | None
-    """None when the noise cannot be estimated."""
+    """One sigma of the value; None when the noise cannot be estimated."""
 
 
 @dataclass(frozen=True, eq=False)

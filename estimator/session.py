@@ -30,7 +30,7 @@ PROGRAMMES = (TWO_AXIS_STAND, ARBITRARY_ORIENTATIONS, ROTATION_ALIGNMENT, RATE_T
 """All, as session files name them."""
 AS_FOUND, AS_LEFT = "as-found", "as-left"
 STAGES = (AS_FOUND, AS_LEFT)
-"""Before and after a unit was worked on."""
+"""Stages of a session: before and after a unit was worked on."""
 MEASURED, SIMULATED = "measured", "simulated"
 ORIGINS = (MEASURED, SIMULATED)
 """Origins of the readings."""

@@ -40,7 +40,7 @@ class Listed(
     name: str
     unit: str
     observable: bool | None = None
-    """None where this is not asked."""
+    """Whether the session determines it well enough; None where observability is not reported."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +67,7 @@ class AlignmentResult(
     covariance: Array
     """(n, n) SI."""
     observable: dict[str, bool]
-    """For φ, ε, ∇, E, κ: whether the session determines the state well enough to be of use."""
+    """Whether the session determines the state well enough to be of use, for φ, ε, ∇, E, κ."""
     attitude: Array
     """(3, 3) C, block → east-north-up, at the end, corrected by φ."""
     positions: tuple[float, ...]

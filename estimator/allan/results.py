@@ -22,7 +22,7 @@ class AllanTerm:
     sigma: float | None
     """One sigma of the value."""
     most: float | None
-    """For a term that is not decided, a bound that it exceeds with a chance of 2.5 %; None where nothing is known."""
+    """Bound on a term that is not decided, exceeded with a chance of 2.5 %; None where nothing is known."""
 
     def interval(self, share: float = 0.95) -> tuple[float, float] | None:
         """The interval that holds the true size with that probability; None where the record does not decide it."""

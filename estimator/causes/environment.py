@@ -202,7 +202,7 @@ class WarmUp(GridCause):
     steps = 10
 
     def grid(self, setting: Setting) -> Iterator[tuple[float, ...]]:
-        """From the rows' spacing to the span; no τ that is over before the first row."""
+        """Time constants from the rows' spacing to the span; no τ that is over before the first row."""
         assert setting.time is not None
         span = float(np.ptp(setting.time))
         shortest = max(span / max(setting.rows, 2), settled(setting))

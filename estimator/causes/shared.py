@@ -20,8 +20,9 @@ WAVES = 12
 
 
 class SharedCourse(SensorCause):
-    """Its shape is the sizes of the waves of `KINDS` in turn, zero but for one of them; they are found where sensors
-    share them, and tried on no single one."""
+    """A course of several sensors. Its shape is the sizes of the waves of `KINDS` in turn, zero but for one kind; they
+    are found where sensors share them, and tried on no single one.
+    """
 
     identifier = "shared-course"
     scope = "environment"

@@ -96,7 +96,7 @@ class Shared(
     more: tuple[str, ...]
     """Sensors that follow it below what can be named of one alone."""
     more_amplitude: tuple[float, ...]
-    """Their amplitudes, in the unit of the finding's amplitudes for their kind."""
+    """Amplitudes of those sensors, in the unit of the finding's amplitudes for their kind."""
     more_sigma: tuple[float, ...]
     drawn_for: str
     """The sensor that shows it most, whose course is drawn."""

@@ -16,7 +16,7 @@ class SessionAmplitude(Document, forms={"started_at": MOMENT}):
     amplitude: tuple[float, ...]
     """SI, element by element as in the finding."""
     sigma: tuple[float | None, ...]
-    """None where the session does not see the element."""
+    """One sigma of each amplitude; None where the session does not see the element."""
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ class GroupFinding(Document, forms={"since": MOMENT}):
     """Kind of the sensors; empty without any."""
     amplitude: tuple[float, ...]
     sigma: tuple[float | None, ...]
-    """None of an amplitude that the pool does not see."""
+    """One sigma of each amplitude; None where the pool does not see it."""
     units: tuple[str, ...]
     spread: tuple[float, ...]
     """τ of each sensor in turn, in the unit of its amplitudes."""
@@ -155,7 +155,7 @@ class EmpiricalTerm:
     3β``.
     """
     sensors: tuple[str, ...]
-    """None where it acts on the applied vector."""
+    """Names of the sensors; empty where it acts on the applied vector."""
     subject: str
     amplitude: tuple[float, ...]
     sigma: tuple[float, ...]
@@ -198,7 +198,7 @@ class GroupDiagnosis(
     structures: tuple[GroupStructure, ...]
     limits: tuple[PoolLimit, ...]
     gain: GroupGain | None
-    """None without findings, or with too few sessions to leave any out."""
+    """Gain on later sessions; None without findings, or with too few sessions to leave any out."""
     e_value: float
     """E-value of the group against no effect beside the findings."""
     notes: tuple[str, ...] = ()

@@ -73,7 +73,7 @@ class GroupSelection:
     """Names that may as well be something outside the catalogue."""
 
     def model(self, without: Found | None = None) -> PoolModel:
-        """Everything found, one finding left out."""
+        """The model of all findings, one left out."""
         model = PoolModel(absorbed=(*self.of_one_session, *self.aside))
         n = range(len(self.layout.parts))
         for place in self.nameless:

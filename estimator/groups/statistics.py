@@ -34,7 +34,7 @@ class Block:
 
     cause: str
     sensor: str
-    """Its name; empty for what acts on the applied vector."""
+    """Name of the sensor; empty for an effect on the applied vector."""
     kind: str
     """Kind of the sensor; empty where there is none."""
     shape: float | None

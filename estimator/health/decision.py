@@ -166,7 +166,7 @@ def _as_measured(
 
 
 def _assess(case: _Case, k: float) -> _Assessed | None:
-    """None where the change is not known."""
+    """Reduces a case to the numbers of the rule; None where the change is not known."""
     change = case.change
     if change is None:
         return None

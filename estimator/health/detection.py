@@ -43,7 +43,7 @@ class Change:
     sigma: Array
     """(k,) one sigma of it."""
     p_value: float
-    """Over all hypotheses, for this one parameter."""
+    """p-value over all hypotheses, for this one parameter."""
     column: Array
     """(n,) its shape, per unit of size."""
     wanders: bool = False
@@ -59,7 +59,7 @@ class Detected:
     changes: tuple[Change, ...]
     """Found, the most evident first."""
     warmth: Warmth | None
-    """None where the sessions do not span temperature."""
+    """Effect of temperature; None where the sessions do not span temperature."""
     readings: Readings
     """The readings, with temperature as a regressor where its effect was found."""
 

@@ -1,4 +1,4 @@
-"""When a parameter reaches its tolerance, and the risk of waiting. Time in years from the last session.
+"""The time at which a parameter reaches its tolerance, and the risk of waiting. Years from the last session.
 
 Every draw of `posterior` goes on: l(h) = l + r·h + a·(aging) + q·B(h), and is out of tolerance once |l(h)| ≥ T; of an
 axis |l| is the length, the tolerance a disc. Between two dates at which a draw is followed, a walk from x to y that is
@@ -152,7 +152,7 @@ def _beyond(distance: Array, sigma: Array, k: int) -> Array:
 
 
 def reach(chance: Array, level: float, ahead: Array = AHEAD) -> Array:
-    """When the chance of having reached the tolerance passes a level.
+    """The time at which the chance of having reached the tolerance passes a level.
 
     Parameters
     ----------

@@ -63,7 +63,7 @@ class Odds:
 
 @dataclass(frozen=True, eq=False)
 class Mixture:
-    """Everything of B that depends on the schedule alone; k components, G hypotheses that have a shape."""
+    """The parts of B that depend on the schedule alone; k components, G hypotheses that have a shape."""
 
     unit: Array
     """(k, n, H) whitened shapes of length one; 0 where a shape leaves no trace."""

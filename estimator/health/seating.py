@@ -105,7 +105,7 @@ class Weighted:
 
 @dataclass(frozen=True, eq=False)
 class Seating:
-    """Everything at given events."""
+    """The fit at given events."""
 
     parts: tuple[Weighted, ...]
     scatter: SeatingScatter

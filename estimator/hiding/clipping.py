@@ -125,7 +125,7 @@ def clipped(
 
 
 def too_strong(cause: Cause, least: float) -> TooWeakError:
-    """Why nothing as weak can be hidden."""
+    """The error that nothing as weak can be hidden, with the reason."""
     return TooWeakError(
         f"{cause.identifier} is {least:.4g} standard errors or more here: at its limit a sensor reads the same in "
         "two positions at least, and the largest inputs lie that far apart",

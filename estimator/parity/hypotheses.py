@@ -82,7 +82,7 @@ class ParityEvidence:
         return self.change.dof / max(self.own_noise, 1e-3)
 
     def _tried(self, sensor: int, kind: str, whitened: Array) -> ParityHypothesis:
-        """Its ratio, and how improbable that is by chance; whitened (q, k), standard errors per unit of the change."""
+        """The hypothesis with its ratio and p-value; whitened (q, k), standard errors per unit of the change."""
         U, sizes, _ = np.linalg.svd(whitened, full_matrices=False)
         basis = U[:, sizes > UNSEEN * max(sizes[0], np.finfo(float).tiny)]
         ratio = float(((basis.T @ self.seen) ** 2).sum())

@@ -36,7 +36,7 @@ class CourseFault:
     """A sensor that fails within the recording, or all through it."""
 
     sensor: str | None
-    """None where parity cannot say which of the ``suspects``: then there are two at least."""
+    """Name of the sensor; None where parity cannot say which of the ``suspects``: then there are two at least."""
     suspects: tuple[str, ...]
     """Sensors that explain it about equally well, the likeliest first; the ``sensor`` alone where one is named."""
     kind: str

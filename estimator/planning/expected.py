@@ -15,7 +15,7 @@ from estimator.session import ACCELEROMETER, Array, CalibrationSession, Stand
 
 
 def head_kind(like: CalibrationSession) -> str:
-    """Whose elevation the plan speaks of: the accelerometers' α where there are any, else the gyros' χ."""
+    """The kind of sensor whose elevation is planned: accelerometers (α) where there are any, else gyros (χ)."""
     kinds = {s.kind for s in like.sensors}
     return ACCELEROMETER if ACCELEROMETER in kinds else kinds.pop()
 

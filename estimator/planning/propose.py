@@ -38,8 +38,9 @@ MOST_READINGS = 1728
 their square, would fill the memory; up to here they take less than 400 MB."""
 
 NEARLY = 1.1
-"""Where no number reaches the tolerances: the fewest positions within this of what the most would give. A tenth of
-uncertainty is not worth twice the time on the stand."""
+"""Largest ratio to the result with the most positions, where no number reaches the tolerances: the fewest positions
+within it are taken, since a tenth of uncertainty is not worth twice the time on the stand.
+"""
 
 
 def plan(like: CalibrationSession, request: Request | None = None, *, sigma: Array | None = None) -> Plan:

@@ -9,7 +9,7 @@ from estimator.message import joined, say, say_count
 from estimator.session import CORRECTED_SAMPLES, LEFT_OUT, NOTED, ScreenFinding
 
 Screening = tuple[ScreenFinding, ...]
-"""Everything that was found in one file."""
+"""All findings in one file."""
 
 OFF = "off"
 """The word that declines all kinds."""

@@ -116,7 +116,7 @@ def estimate(value: float, sigma: float, freedom: float) -> Estimate:
 
 
 def report(session: CalibrationSession, known: Knowledge, fit: Fit, gauge: str) -> Calibration:
-    """Everything that is known, named."""
+    """The calibration of all that is known, named."""
     sigma = np.sqrt(np.diagonal(known.covariance)).reshape(-1, 5)
     turns = tangents(known.parameters.axis)
     return Calibration(

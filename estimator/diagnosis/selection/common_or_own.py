@@ -119,7 +119,8 @@ def misfit_allowance(state: SearchState) -> float:
 
 
 def with_residual_noise(start: SearchState, state: SearchState, unknown: Array) -> tuple[SearchState, SearchState]:
-    """Nothing found, and what was found, ``unknown`` sensors' (m,) bool noise taken as what that leaves.
+    """The search before any finding, and its result, with the noise of ``unknown`` sensors (m,) bool taken as the
+    scatter that the findings leave.
 
     A noise estimated from residuals that hold an effect hides it, from a course more than from a name. Where no name is
     of what changed since the history, that is left out: parameters are then known so well that minutes of arc are no
@@ -148,7 +149,9 @@ def concerns_all(state: SearchState) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class Ground:
-    """Nothing found, with the noise by which a course is weighed, and the course that explains most there."""
+    """The search before any finding, with the noise by which a course is weighed, and the course that explains most
+    there.
+    """
 
     begun: SearchState
     noise: float

@@ -114,7 +114,7 @@ def with_unlike_noise(state: SearchState) -> SearchState:
 
 
 def unlike_noise(state: SearchState, sensor: int, excess: ExcessVariance | None) -> UnlikeNoise | None:
-    """How a sensor's scatter differs from noise; None where it does not, or where too few rows tell."""
+    """The difference between a sensor's scatter and noise; None where there is none, or where too few rows tell."""
     residuals, attributed = state.residuals, state.attributed()
     freedom = residuals.row_freedom - (attributed[: residuals.rows] ** 2).sum(axis=1)
     of_sensor = (residuals.sensor_of_row[: residuals.rows] == sensor) & (freedom > KNOWN)

@@ -78,8 +78,10 @@ class Settling:
         return found
 
     def beside(self, session: CalibrationSession, history: Sequence[Baseline]) -> tuple[Baseline, list[Baseline]]:
-        """Its session and the earlier ones as `baselines` fits them, the session without the course, which is put back
-        into what is left: a course of hundreds of standard errors moves a fit by more than is linear."""
+        """The course's session and the earlier ones, fitted by `baselines`; the course is taken out of the session
+        before the fit and put back into its residuals: a course of hundreds of standard errors moves a fit by more than
+        is linear.
+        """
         columns = [shape.columns[..., 0] * size for shape, size in zip(self.shapes, self.size, strict=True)]
         effect = np.sum(columns, axis=0)
         scale = baseline_of(session).parameters.scale
@@ -93,7 +95,7 @@ class Settling:
         return self.cause.since_power_on and setting.switched_on is not None and self.cause.available(setting)
 
     def left_free(self, session: Baseline) -> Baseline:
-        """Its session fitted with sizes and nonlinear parameter as nuisances of which nothing is known."""
+        """The course's session fitted with sizes and nonlinear parameter as nuisances of which nothing is known."""
         columns = np.concatenate([s.columns for s in self.shapes], axis=-1)
         columns = columns / np.sqrt((columns**2).sum(axis=(0, 1)))
         constant = np.concatenate([session.constant, columns], axis=-1)
@@ -145,7 +147,7 @@ class Comparable:
     """A session as others see it. m sensors."""
 
     free: Baseline
-    """Its own course left free."""
+    """The session with its own course left free."""
     reach: Array
     """(m,) |o|, m/s² (rad/s), 0 of what has settled."""
     moves: bool
@@ -165,7 +167,7 @@ class Comparable:
         return not (self.moves or (self.reach > NEGLIGIBLE * sigma).any())
 
     def opened(self, session: Baseline, settled: "Comparable") -> Baseline:
-        """Its ``session`` with how far its parameters may lie off those of one that has settled more."""
+        """The ``session`` with the spread of its parameters about those of one that has settled more."""
         return session if self.has_settled else replace(session, unsettled=np.sqrt(variance_between(self, settled)))
 
 

@@ -94,7 +94,7 @@ class Scored:
     statistic: float
     """Equivalent χ²."""
     freedom: int
-    """Its degrees of freedom."""
+    """Degrees of freedom of the statistic."""
     log_evidence: float
     """ln Bayes factor, the share of the cause's prior included."""
     p_value: float
