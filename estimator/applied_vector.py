@@ -183,7 +183,7 @@ def magnitude(session: CalibrationSession | Schedule, kind: str) -> float:
 
 
 def _constant_weights(session: Schedule, kind: str) -> Array:
-    """(6, 3) how each constant error acts: as a raise of the head, a tilt across it (1 a rad), a stretch (1/s).
+    """(6, 3) action of each constant error: a raise of the head, a tilt across it (1 a rad), a stretch (1/s).
 
     Gyros by the paper's (31): the latitude raises; levelling and meridian tilt by their share of the Earth's rate.
     """
@@ -197,7 +197,7 @@ def _constant_weights(session: Schedule, kind: str) -> Array:
 
 
 def _kind_geometry(session: Schedule, kind: str) -> Array:
-    """(8, R, 3) for one kind of sensor: n, dn/d(each constant error), dn/dβ; m/s² (rad/s), per rad or s."""
+    """(8, R, 3) vectors for one kind of sensor: n, dn/d(each constant error), dn/dβ; m/s² (rad/s), per rad or s."""
     beta, size, angle = session.beta, magnitude(session, kind), elevation(session.stand, kind)
     sin, cos, level = np.sin(beta), np.cos(beta), np.ones_like(beta)
     lift, reach = np.sin(angle), np.cos(angle)
@@ -218,7 +218,7 @@ def stand_geometry(session: CalibrationSession) -> Geometry:
 
 @lru_cache(maxsize=SCHEDULES)
 def _geometry(schedule: Schedule) -> Geometry:
-    """The same of any session with this schedule."""
+    """The geometry of any session with this schedule; read only."""
     kinds = schedule.kinds
     different = list(dict.fromkeys(kinds))
     by_kind = np.stack([_kind_geometry(schedule, kind) for kind in different], axis=2)

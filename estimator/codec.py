@@ -33,7 +33,7 @@ class UnreadableError(ValueError):
         self.problem, self.path = problem, path
 
     def within(self, key: str | int) -> "UnreadableError":
-        """The same, seen from the object or list that holds the place."""
+        """The error as seen from the object or list that holds the place."""
         rest = f".{self.path}" if self.path and not self.path.startswith("[") else self.path
         return UnreadableError(self.problem, f"[{key}]{rest}" if isinstance(key, int) else f"{key}{rest}")
 
@@ -366,4 +366,4 @@ PLAIN = Codec({})
 WITH_PARTS: Mapping[type, Form] = {Message: Form(as_document, with_messages)}
 """Messages with their parts, where they are to be said in any language later."""
 KEPT = Codec(WITH_PARTS)
-"""The same with them."""
+"""Codec that keeps messages with their parts."""

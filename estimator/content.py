@@ -39,7 +39,7 @@ class Content:
 def remembered(
     function: Callable[[CalibrationSession, *Rest], Result],
 ) -> Callable[[CalibrationSession, *Rest], Result]:
-    """The same function of a session (and of what can be hashed), worked out once for each content that is not large.
+    """The function of a session (and of hashable arguments), worked out once for each content that is not large.
 
     Its result is shared, so that nobody may change it.
     """
@@ -57,7 +57,7 @@ def remembered(
 
 
 def once(function: Callable[[Owner, *Rest], Result]) -> Callable[[Owner, *Rest], Result]:
-    """The same function of an object that never changes (and of what can be hashed), worked out once while it lives.
+    """The function of an object that never changes (and of hashable arguments), worked out once in the object's life.
 
     Its result is shared, so that nobody may change it, and neither it nor the rest may hold the object.
     """
@@ -85,8 +85,8 @@ Worked = TypeVar("Worked", bound=OfSession)
 def each_remembered(
     function: Callable[[list[Worked], *Rest], list[Result]],
 ) -> Callable[[list[Worked], *Rest], list[Result]]:
-    """The same function of several, whose results do not depend on one another: what it was asked before, of the same
-    and with the same rest, is not worked out again where the session is not large.
+    """The function of several items, whose results do not depend on one another: an item that was asked for before,
+    with the same further arguments, is not worked out again unless its session is large.
 
     Its results are shared, so that nobody may change them.
     """

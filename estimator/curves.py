@@ -28,7 +28,7 @@ class Curve(Document):
     order: int
     """Order of the polynomial that the readings ask for."""
     covariance: Array
-    """(q, q) of the coefficients, those left out included."""
+    """(q, q) covariance of the coefficients, those left out included."""
     scatter: float = 0.0
     """One sigma of what no such polynomial follows, from temperature to temperature; SI."""
     loop: float = 0.0
@@ -90,7 +90,7 @@ class ThermalCurves(Document):
         return np.vander(np.atleast_1d(temperature) - self.reference_temperature, count, increasing=True)
 
     def value(self, curve: Curve, temperature: Array) -> Array:
-        """(n,) of the parameter, SI, at temperatures (n,), °C."""
+        """(n,) values of the parameter, SI, at temperatures (n,), °C."""
         return self.powers(temperature, len(curve.coefficients)) @ curve.coefficients
 
     def sigma(self, curve: Curve, temperature: Array) -> Array:

@@ -81,17 +81,17 @@ def joined(joint: str, parts: Iterable[str]) -> Message:
 
 
 def capitalised(text: str) -> str:
-    """The same with a capital letter."""
+    """The text with a capital first letter."""
     return _begun(text, str.upper)
 
 
 def uncapitalised(text: str) -> str:
-    """The same with a small first letter."""
+    """The text with a small first letter."""
     return _begun(text, str.lower)
 
 
 def without_stop(text: str) -> str:
-    """The same without its full stop."""
+    """The text without its full stop."""
     if not isinstance(text, Message):
         return text.removesuffix(".")
     if last := re.search(r"\{(\w+)\}$", text.template):
@@ -100,7 +100,7 @@ def without_stop(text: str) -> str:
 
 
 def changed(text: str, change: Callable[[str], str]) -> str:
-    """The same with every text that it is made of changed."""
+    """The text with ``change`` applied to every text that it is made of."""
     if not isinstance(text, Message):
         return change(text)
     parts = {name: changed(part, change) for name, part in text.parts.items()}

@@ -34,7 +34,7 @@ class NominalVector:
     offset: Array
     """(3,) d, m/s² (rad/s)."""
     covariance: Array
-    """(12, 12) of S row by row and then o; NaN where the noise cannot be estimated."""
+    """(12, 12) covariance of S row by row and then o; NaN where the noise cannot be estimated."""
     curvature: float
     """Largest |c| of the sensors, s²/m (s/rad): c·a² is what the matrix cannot hold."""
 
@@ -92,7 +92,7 @@ def _nominal(session: CalibrationSession, block: BlockCorrection) -> tuple[Array
 
 
 def _jacobian(block: BlockCorrection, by_scale: Array, weighted: Array, inverse: Array, offset: Array) -> Array:
-    """(12, 5 m) of S and o by scale, bias, quadratic and the axis' two tangents, sensor after sensor."""
+    """(12, 5 m) derivatives of S and o by scale, bias, quadratic and the axis' two tangents, sensor after sensor."""
     columns = []
     for i, sensor in enumerate(block.sensors):
         moved = [(np.outer(by_scale[:, i], sensor.axis), by_scale[:, i] * sensor.bias)]

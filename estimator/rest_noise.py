@@ -61,7 +61,9 @@ class Waves:
     least: Array
     """(n, m) variance of the mean if the samples were independent, unit of the readings squared."""
     inside: Array
-    """(n, m) the same from the scatter within the blocks: the part that is faster than they are."""
+    """(n, m) variance of the mean from the scatter within the blocks, unit of the readings squared: the part that is
+    faster than they are.
+    """
 
     @property
     def known(self) -> Array:
@@ -238,9 +240,11 @@ class RestNoise:
     """Noise of m channels by the waves of n rests."""
 
     variance: Array
-    """(n, m) of the mean of each rest, unit of the readings squared."""
+    """(n, m) variance of the mean of each rest, unit of the readings squared."""
     spectrum: Array
-    """(k, B − 1, m) of the k rests of more than a single sample, the same unit; 1 of readings that never change."""
+    """(k, B − 1, m) spectrum of the k rests of more than a single sample, unit of the readings squared; 1 of readings
+    that never change.
+    """
 
 
 def rest_noise(waves: Waves, tilting: Tilting = STEADY) -> RestNoise:

@@ -44,7 +44,7 @@ class Estimate(Document, order=("value", "sigma", "repeatability", "dof", "cover
 
     @property
     def coverage_factor(self) -> float | None:
-        """The same of `COVERAGE`; None where sigma is not known."""
+        """The coverage factor for `COVERAGE`; None where sigma is not known."""
         return None if self.sigma is None else self.factor()
 
 

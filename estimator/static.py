@@ -182,7 +182,7 @@ def at_rest(session: CalibrationSession, intervals: Intervals) -> Intervals:
 
 
 def require_still(intervals: Intervals, moves: NDArray[np.bool_]) -> Intervals:
-    """The same, given in which of them the block ``moves`` (n,)."""
+    """The labelled stretches; ScheduleError where the block ``moves`` (n,) in most of them."""
     if 2 * np.count_nonzero(moves) <= len(intervals):
         return intervals
     rows = joined(

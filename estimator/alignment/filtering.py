@@ -29,7 +29,7 @@ class KalmanState:
     x: Array
     """(n,) estimate."""
     P: Array
-    """(n, n) its covariance."""
+    """(n, n) covariance of the estimate."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +121,7 @@ class Filtered:
     sigmas: Array
     """(K, n) SI, one sigma."""
     innovations: Array
-    """(K, 2) of the velocity, m/s."""
+    """(K, 2) innovations of the velocity, m/s."""
     innovation_sigmas: Array
     """(K, 2) m/s."""
     last: KalmanState

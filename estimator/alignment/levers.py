@@ -52,7 +52,7 @@ class Turning:
 
     @property
     def columns(self) -> Array:
-        """(R, 2) what c and d of one metre add to a row, m/s²."""
+        """(R, 2) contributions of one metre of c and of d to each row, m/s²."""
         return np.column_stack([-self.square, self.faster])
 
 

@@ -54,7 +54,7 @@ class WholeTurns:
     rates: Array
     """(T,) rad/s, of the table."""
     means: Array
-    """(T, 3) of the gyros, block axes, rad/s."""
+    """(T, 3) mean rates of the gyros, block axes, rad/s."""
     times: Array
     """(T,) middle, s."""
     rows: Array

@@ -112,9 +112,9 @@ class RateTableResult(
     """E_xz, E_yz, kappa_z, eps_x, eps_y, eps_z."""
     units: tuple[str, ...]
     estimate: Array
-    """(6,) in `units`; NaN for what is not known."""
+    """(6,) estimated values in `units`; NaN for what is not known."""
     covariance: Array
-    """(6, 6) in `units`; NaN rows and columns for what is not known."""
+    """(6, 6) covariance in `units`; NaN rows and columns for what is not known."""
     turn_rates: Array
     """(T,) rate of the table in every whole turn, rad/s."""
     turn_times: Array

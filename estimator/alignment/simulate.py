@@ -123,7 +123,7 @@ def turn_rates(angle: Array, row: float) -> Array:
 
 
 def at_a_distance(sensors: tuple[Sensor, ...], positions: Array, rate: Array, row: float) -> Array:
-    """(R, m) what sensors at positions (m, 3), m, feel of the turn, m/s²: means of a·(ω×(ω×r) + α×r) over each row.
+    """(R, m) inputs from the turn to sensors at positions (m, 3), m, in m/s²: means of a·(ω×(ω×r) + α×r) over each row.
 
     rate : (R + 1,) of the table at the ends of rows of ``row`` s, rad/s, evenly changing in between.
     """
@@ -209,7 +209,7 @@ def with_errors(motion: BlockMotion, truth: Truth) -> BlockMotion:
 def _readings(
     sensors: tuple[Sensor, ...], motion: BlockMotion, noise: Imperfections, rng: np.random.Generator
 ) -> Array:
-    """(R, m) what the sensors read along their axes, reading units."""
+    """(R, m) readings of the sensors along their axes, reading units."""
     columns = []
     for sensor in sensors:
         accelerometer = sensor.kind == ACCELEROMETER

@@ -81,7 +81,7 @@ class LeverResponse:
 
 
 def rival_columns(pieces: Pieces) -> dict[str, Array]:
-    """(N, q) of every rival, each in units of its own."""
+    """(N, q) columns of every rival, each in units of its own."""
     turns = pieces.turns
     return {
         "vibration": np.column_stack([turns, pieces.levers[:, 0]]),

@@ -44,7 +44,7 @@ class SensorNoise(Document, keys={"tau": "tau_s", "holds": "holds_s"}):
     deviation: Array
     """(J,) overlapping Allan deviation, m/s² or rad/s."""
     freedom: Array
-    """(J,) its effective degrees of freedom, under the fitted terms."""
+    """(J,) effective degrees of freedom of the deviation, under the fitted terms."""
     holds: tuple[float, float] | None
     """s, from the shortest to the longest τ at which the terms describe it; None where they do nowhere."""
 

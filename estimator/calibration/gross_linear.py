@@ -57,14 +57,14 @@ class Predicted:
     """(R, m) reading less value in sigmas; NaN likewise."""
 
     def with_sensors(self, which: Array, part: "Predicted") -> "Predicted":
-        """The same with other predictions, of shape (R, k), for the k sensors ``which`` (m,) bool."""
+        """The prediction with that of k sensors, ``which`` (m,) bool, replaced by ``part``, of shape (R, k)."""
         merged = [a.copy() for a in (self.value, self.sigma, self.t)]
         for whole, own in zip(merged, (part.value, part.sigma, part.t), strict=True):
             whole[:, which] = own
         return Predicted(*merged)
 
     def shifted(self, offset: Array) -> "Predicted":
-        """The same of readings with an ``offset`` (m,), reading units, on top."""
+        """The prediction of readings with an ``offset`` (m,), reading units, on top."""
         return Predicted(self.value + offset, self.sigma, self.t)
 
 
@@ -123,7 +123,7 @@ def regression(basis: Array, y: Array, stated: Array, left_out: Array) -> Predic
 
 
 def of_one(basis: Array, y: Array, stated: Array, free: Array) -> tuple[Array, Array]:
-    """(R,) what a sensor's readings y (R,) should be, and one sigma of the difference."""
+    """(R,) predictions of a sensor's readings y (R,), and one sigma of the difference."""
     nothing = np.full(len(y), np.nan), np.full(len(y), np.nan)
     known = bool(np.isfinite(stated).all() and (stated > 0).all())
     weight = 1.0 / stated if known else np.ones(len(y))

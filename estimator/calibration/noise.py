@@ -194,8 +194,9 @@ def typical(value: Array, sensors: Array, norm: Array) -> Array:
 
 
 def median(values: Array) -> Array:
-    """(S,) of the values (S, k), in their unit, that are not NaN, one of each row at least; `numpy.nanmedian` takes a
-    millisecond for it."""
+    """(S,) medians of the rows of values (S, k), in their unit, without NaN; every row holds a number.
+    `numpy.nanmedian` takes a millisecond for it.
+    """
     rising, known = np.sort(values, axis=1), (~np.isnan(values)).sum(axis=1, keepdims=True)
     lower, upper = (np.take_along_axis(rising, place, axis=1)[:, 0] for place in ((known - 1) // 2, known // 2))
     return np.asarray((lower + upper) / 2)

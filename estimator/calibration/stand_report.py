@@ -38,7 +38,7 @@ class Solved:
     p_value: Array
     """(S,)"""
     factor: Array
-    """(S,) by which the stated row noise was enlarged."""
+    """(S,) factor by which the stated row noise was enlarged."""
     freedom: Array
     """(S, P) degrees of freedom of the variances: infinite where the noise is known, NaN where not determined."""
 

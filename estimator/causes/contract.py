@@ -97,7 +97,7 @@ class Setting:
 
     @cached_property
     def input(self) -> Array:
-        """(R, m) what the sensors integrate, a + b + c·a², m/s² (rad/s)."""
+        """(R, m) inputs that the sensors integrate, a + b + c·a², m/s² (rad/s)."""
         return input_of(self.parameters, self.n)
 
     @property
@@ -155,7 +155,7 @@ class Shape:
     """Values of the nonlinear parameters, in the order of `Cause.nonlinear_units`."""
 
     def first(self, q: int) -> "Shape":
-        """The same with its first q columns."""
+        """The shape with its first q columns alone."""
         return replace(self, columns=self.columns[..., :q])
 
 
@@ -245,12 +245,12 @@ class Signature(Cause):
         """Every signature the cause could leave in this session."""
 
     def columns(self, setting: Setting, shape: Shape) -> Array:
-        """(R, m, q) what the effect of some shape adds in another session, m/s² (rad/s) per unit amplitude."""
+        """(R, m, q) effect of a shape in another session, m/s² (rad/s) per unit amplitude."""
         known = (s for s in self.shapes(setting) if (s.sensors, s.nonlinear) == (shape.sensors, shape.nonlinear))
         return next(known).columns
 
     def all_columns(self, setting: Setting, shapes: Sequence[Shape]) -> Array:
-        """(R, m, S·q) what the effects of S shapes add in another session, m/s² (rad/s) per unit amplitude."""
+        """(R, m, S·q) effects of S shapes in another session, m/s² (rad/s) per unit amplitude."""
         return np.concatenate([self.columns(setting, shape) for shape in shapes], axis=-1)
 
     def plausible(self, shape: Shape, amplitude: float) -> bool:
@@ -308,10 +308,10 @@ class SensorCause(Signature):
 
     @abstractmethod
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
-        """(R, q) what a unit amplitude adds inside the bracket of sensor i, m/s² (rad/s)."""
+        """(R, q) effect of a unit amplitude inside the bracket of sensor i, m/s² (rad/s)."""
 
     def terms(self, setting: Setting, i: int, grid: Sequence[tuple[float, ...]]) -> Array:
-        """(S, R, q) the same at every one of S points of the grid, m/s² (rad/s)."""
+        """(S, R, q) terms of sensor i at S points of the grid, m/s² (rad/s)."""
         terms = [self.term(setting, i, nonlinear) for nonlinear in grid]
         return terms[0][None] if len(terms) == 1 else np.stack(terms)
 
@@ -344,7 +344,7 @@ class SensorCause(Signature):
         return self.placed(setting, shape.sensors[0], shape.nonlinear)
 
     def all_columns(self, setting: Setting, shapes: Sequence[Shape]) -> Array:
-        """(R, m, S·q) of S shapes, sensor by sensor, m/s² (rad/s) per unit amplitude."""
+        """(R, m, S·q) columns of S shapes, sensor by sensor, m/s² (rad/s) per unit amplitude."""
         columns = [on_sensor(setting, i, terms) for i, terms in self.terms_of(setting, shapes)]
         return np.moveaxis(np.concatenate(columns), 0, 2).reshape(setting.rows, len(setting.kinds), -1)
 
@@ -354,10 +354,10 @@ class GridCause(SensorCause):
 
     @abstractmethod
     def terms(self, setting: Setting, i: int, grid: Sequence[tuple[float, ...]]) -> Array:
-        """(S, R, q) what a unit amplitude adds at S points of the grid inside the bracket of sensor i, m/s² (rad/s)."""
+        """(S, R, q) effects of a unit amplitude at S points of the grid inside sensor i's bracket, m/s² (rad/s)."""
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
-        """(R, q) the same at one point, m/s² (rad/s)."""
+        """(R, q) term of sensor i at one point of the grid, m/s² (rad/s)."""
         return np.asarray(self.terms(setting, i, [nonlinear])[0])
 
 

@@ -228,7 +228,7 @@ class WarmUp(GridCause):
             yield Shape(shape.sensors, columns, (float(tau * factor),))
 
     def derivative(self, setting: Setting, shape: Shape) -> Array:
-        """(R, m, 1) by ln τ, dimensionless."""
+        """(R, m, 1) derivative of the columns by ln τ, dimensionless."""
         (tau,), time = shape.nonlinear, since_on(setting)
         bent = np.zeros((*shape.columns.shape[:2], 1))
         bent[:, shape.sensors[0], 0] = np.exp(-time / tau) * time / tau

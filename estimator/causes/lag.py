@@ -81,7 +81,7 @@ class ThermalLag(SensorCause):
             yield Shape(shape.sensors, self.placed(setting, i, near), near)
 
     def derivative(self, setting: Setting, shape: Shape) -> Array:
-        """(R, m, 1) by ln τ, °C."""
+        """(R, m, 1) derivative of the columns by ln τ, °C."""
         (i,), (tau,) = shape.sensors, shape.nonlinear
         above, below = (self.placed(setting, i, (tau * exp(step),)) for step in (STEP, -STEP))
         return (above - below) / (2 * STEP)

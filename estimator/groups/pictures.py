@@ -40,7 +40,7 @@ class Pictured:
     after: Array
     """(R,) m/s² (rad/s)"""
     variance: Array
-    """(R,) of the readings."""
+    """(R,) variance of the readings, (m/s²)² ((rad/s)²)."""
 
 
 def pictures(findings: Sequence[GroupFinding], sessions: Sequence[CalibrationSession]) -> list[Picture | None]:

@@ -93,7 +93,7 @@ class PlaceMoments:
         return np.asarray(self.F.sum(axis=0))
 
     def given(self, shared: Sequence[Key] = (), free: Sequence[Key] = ()) -> "PlaceInput":
-        """The same with some candidates in the fit: of one amplitude in all sessions, or of one in each."""
+        """The statistics with some candidates in the fit: of one amplitude in all sessions, or of one in each."""
         U, F = self.U, self.F
         if free:
             freed = np.concatenate([self.slots[k] for k in free])

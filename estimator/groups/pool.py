@@ -52,7 +52,7 @@ class PoolMoments:
     U: Array
     """(n, H, w) scores, 1/SI, given the joint fit."""
     evidence: Array
-    """(n, H, w) the same as they enter the evidence: those of estimated noise shrunk."""
+    """(n, H, w) scores as they enter the evidence: those of estimated noise shrunk."""
     F: Array
     """(n, H, w, w) 1/SI²."""
     cross: Array

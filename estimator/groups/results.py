@@ -141,7 +141,7 @@ class GroupGain(Document, optional=("before", "after")):
     """Root mean square residual, m/s² (rad/s), of every sensor in the latest session, by kind and name, without the
     findings; None where that session was not at hand."""
     after: dict[str, dict[str, float]] | None = None
-    """The same with them, at the amplitudes that earlier sessions fixed."""
+    """Root mean square residual with the findings, at the amplitudes that earlier sessions fixed; as ``before``."""
 
 
 @dataclass(frozen=True)

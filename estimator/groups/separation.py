@@ -90,7 +90,9 @@ class SeparationPlan:
 
 
 def planned(session: CalibrationSession) -> list[SeparationPlan]:
-    """The same session again, and every proposal of another one; sessions that are many anyway are not averaged too."""
+    """Plans of the same session again and of every proposal of another one; sessions that are many anyway are not
+    averaged too.
+    """
     baseline = baseline_of(averaged(session))
     return [
         SeparationPlan.of(AGAIN, baseline),

@@ -99,15 +99,15 @@ class SessionStatistics(
     reach: Array
     """(D,) largest change of a reading per unit amplitude, as part of the applied vector."""
     shrink: Array
-    """(B,) by which a score enters the evidence: below 1 where the noise is estimated from the session itself."""
+    """(B,) factor with which a score enters the evidence: below 1 where the session itself gives the noise."""
     energy: Array
     """(m,) χ² of the residuals of each sensor, what the session itself shows plainly taken out."""
     freedom: Array
-    """(m,) its degrees of freedom."""
+    """(m,) degrees of freedom of ``energy``."""
     whole: Array
     """(m,) χ² of the residuals of each sensor, with what the session itself shows plainly."""
     whole_freedom: Array
-    """(m,) its degrees of freedom."""
+    """(m,) degrees of freedom of ``whole``."""
     noise_factor: Array
     """(m,) factor by which the stated standard errors were enlarged (or reduced), because the readings contradict
     them.
@@ -127,7 +127,7 @@ class SessionStatistics(
         return self.among(every[:, None], every)
 
     def among(self, rows: Array, columns: Array) -> Array:
-        """The same at some ``rows`` and ``columns``, int, of one shape or such as broadcast to one."""
+        """The information at some ``rows`` and ``columns``, int, of one shape or such as broadcast to one."""
         low, high = np.minimum(rows, columns), np.maximum(rows, columns)
         return np.asarray(self.correlation[high * (high + 1) // 2 + low] / STEPS)
 

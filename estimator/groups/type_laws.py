@@ -21,7 +21,7 @@ from estimator.session import Array
 FEWEST_UNITS = 5
 """Fewest units with histories for a law of their type."""
 FEWEST_SENSORS = 10
-"""The same: the spread over fewer is hardly known."""
+"""Fewest sensors for a law of their type: the spread over fewer is hardly known."""
 ROUNDS = 200
 """Rounds of expectation and maximisation; the chances of scatters no longer move by then."""
 

@@ -41,7 +41,7 @@ class Changes:
 
     @cached_property
     def covariance(self) -> Array:
-        """(m r, m r) of both sessions, and what sensors do on their own, rad² or relative²."""
+        """(m r, m r) covariance of the changes: both sessions and the scatter of single sensors, rad² or relative²."""
         return self.current + self.origin + self.scatter**2 * np.eye(len(self.y))
 
     @cached_property
@@ -69,11 +69,11 @@ class AxisPairs:
 
     names: tuple[str, ...]
     axes: Array
-    """(m, 3) of this session, unit vectors."""
+    """(m, 3) axes in this session, unit vectors."""
     frames: Array
     """(m, 3, 2) tangents that its covariance turns them along, dimensionless."""
     origins: Array
-    """(m, 3) of the reference."""
+    """(m, 3) axes in the reference, unit vectors."""
     origin_frames: Array
     """(m, 3, 2)"""
     current: Array

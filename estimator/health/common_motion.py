@@ -162,7 +162,7 @@ class _Agreed:
 
     @property
     def covariance(self) -> Array:
-        """(k, k) of x, rad² or relative²."""
+        """(k, k) covariance of x, rad² or relative²."""
         return self.gain @ self.changes.covariance @ self.gain.T
 
 

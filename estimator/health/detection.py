@@ -45,7 +45,7 @@ class Change:
     p_value: float
     """p-value over all hypotheses, for this one parameter."""
     column: Array
-    """(n,) its shape, per unit of size."""
+    """(n,) shape of the change, per unit of size."""
     wanders: bool = False
     """Whether a walk is likelier than any single change."""
 

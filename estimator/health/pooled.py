@@ -124,9 +124,9 @@ class Evidence:
     span: float
     """Years."""
     log_evidence: Array
-    """(Q, P) of `Fits.log_evidence`."""
+    """(Q, P) log evidence by `Fits.log_evidence`."""
     log_tails: Array = field(default_factory=lambda: np.zeros(len(FREEDOMS)))
-    """(4,) of `tails.log_tails`; zero where it contributes nothing."""
+    """(4,) log likelihoods by `tails.log_tails`; zero where the history contributes nothing."""
 
 
 def learn(histories: Sequence[Evidence]) -> Prior:

@@ -143,7 +143,7 @@ class Prognosis:
     """(h,) probability that any known parameter has reached its tolerance by `AHEAD` after the latest session."""
 
     def chances(self, tracks: Sequence[Track]) -> Array:
-        """(B, h) of every one of the tracks that it was made of, 0 where its level is not known well enough."""
+        """(B, h) chances of every track of this prognosis; 0 where its level is not known well enough."""
         chances = _chances(tracks, self.outlooks)
         return np.where([[outlook.is_known] for outlook in self.outlooks], chances, 0.0)
 

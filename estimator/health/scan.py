@@ -20,7 +20,7 @@ from estimator.session import Array
 from estimator.significance import critical_chi2
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(48)
-"""(48,) of r, dimensionless; right to 1e-4 of itself."""
+"""(48,) nodes and weights of the integral over r, dimensionless; right to a relative 1e-4."""
 ACROSS = 16
 """Nodes of q, which only bends the edge: right to 1e-3 from ρ = ½ on, to a twentieth where scores are independent."""
 REACH = 8.0

@@ -53,7 +53,7 @@ class SeatedUnits:
     value: Array
     """(u, n, k) rad or relative."""
     noise: Array
-    """(u, n, k, k) of each session alone, rad² or relative²; where there is none the unit matrix."""
+    """(u, n, k, k) noise covariance of each session alone, rad² or relative²; the unit matrix where there is none."""
     time: Array
     """(u, n) years."""
     unit: Array
@@ -114,7 +114,7 @@ class Seating:
     value: Array
     """(e, k) δ, rad or relative."""
     covariance: Array
-    """(e, k, e, k) of δ, rad² or relative²."""
+    """(e, k, e, k) covariance of δ, rad² or relative²."""
 
 
 def seated(
@@ -293,7 +293,7 @@ def _sums(seating: Seating) -> tuple[_SeatingSums, _SeatingSums]:
 
 
 def _taken(first: Array, second: Array, covariance: Array) -> Array:
-    """(u, n) what the events take from the traces of P, unit of P; both (u, n, k, e, k)."""
+    """(u, n) reductions of the traces of P by the events, unit of P; both (u, n, k, e, k)."""
     return np.asarray(np.einsum("uiaeb,ebfc,uiafc->ui", first, covariance, second, optimize=True))
 
 

@@ -107,7 +107,7 @@ def _with_ends(moments: bytes, warmth: bytes) -> Shapes:
 
 
 def courses(time: Array, warmth: Array) -> Shapes:
-    """The same with aging that comes to an end and with the temperature, for forecasts.
+    """All shapes, with aging that comes to an end and the temperature besides, for forecasts.
 
     Parameters
     ----------
@@ -142,5 +142,7 @@ def course(time: Array, age: Array | float) -> Array:
 
 
 def settled(time: Array, age: Array | float) -> Array:
-    """The same of aging that comes to an end."""
+    """Aging that comes to an end, at times since the first session, years, with a constant ``age``, years;
+    dimensionless.
+    """
     return np.asarray(-np.expm1(-time / age))

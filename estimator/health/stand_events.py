@@ -162,7 +162,9 @@ def _of_cells(seating: Seating, v: Array) -> float:
 
 
 def _of_fixed(seating: Seating, sums: Array) -> float:
-    """The same of the ω²; sums (2, s) what each adds and is known by, per variance and per variance squared."""
+    """Half the variance that the ω² give a variance; sums (2, s) what each adds and is known by, per variance and per
+    variance squared.
+    """
     theta = seating.scatter.fixed
     return float(((theta * sums[0]) ** 2 / (theta**2 * sums[1] + STAND_PRIOR)).sum())
 

@@ -72,7 +72,7 @@ class _Life:
         return n * float((1 / np.arange(FEWEST_UNITS, n + 1)).sum())
 
     def between(self, start: Array, end: Array) -> Array:
-        """(p,) how many dates lie within, from (p,) years up to and without (p,) years."""
+        """(p,) number of dates from (p,) years up to and without (p,) years."""
         return np.searchsorted(self.dates, end) - np.searchsorted(self.dates, start)
 
     def around(self, event: StandEvent) -> Array:
@@ -249,7 +249,7 @@ def _alike(free: Array, steps: Array) -> Array:
 
 
 def _telling(after: Array, sessions: Array) -> Array:
-    """(c, c) how many units have sessions between two dates, and others; ``after`` (u, c) from each date on."""
+    """(c, c) number of units with sessions between two dates and others besides; ``after`` (u, c) from each date on."""
     between = after[:, :, None] - after[:, None, :]
     return np.asarray(((between > 0) & (between < sessions[:, None, None])).sum(axis=0))
 

@@ -72,7 +72,7 @@ class StandShift:
     value: tuple[float, ...]
     """(k,) δ, rad or relative."""
     covariance: tuple[tuple[float, ...], ...]
-    """(k, k) of δ, rad² or relative²."""
+    """(k, k) covariance of δ, rad² or relative²."""
     units: int
     """Number of units that have sessions with the shift and without it."""
     agreeing: int
@@ -312,7 +312,7 @@ def _units(
 
 
 def _alone(covariance: Array) -> Array:
-    """(n, k, k) what each session is uncertain of by itself, from totals that hold the reference too.
+    """(n, k, k) noise covariance of each session alone, from totals that hold the reference too.
 
     The reference is taken to be as uncertain as the best of the others, half of its total. Without another session
     there is nothing to compare, and any value will do.

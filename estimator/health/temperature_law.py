@@ -48,7 +48,7 @@ class TemperatureStep:
     worth: float
     """Relative for a scale factor, else SI."""
     sigma: float
-    """One sigma of it, with what scatters about the law; the same unit."""
+    """One sigma of the effect, with the scatter about the law; the same unit."""
     dof: float | None
     """Degrees of freedom of sigma; None where the sessions scatter by no more than their noise."""
     temperature: float
@@ -72,7 +72,7 @@ class TemperatureCorrection(TemperatureStep):
     measured: float
     """Change from the reference at the session's temperature: relative for a scale factor, else SI."""
     corrected: float
-    """The same at the reference's temperature."""
+    """Change from the reference at the reference's temperature; the same unit."""
     expanded: float
     """U of the corrected change, the law's share in it."""
 

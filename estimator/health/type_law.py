@@ -103,7 +103,7 @@ def _inverted(information: Array) -> tuple[Array, Array]:
 
 
 def chances(log_likelihood: Array, prior: Array) -> Array:
-    """(..., K) of every τ, by log likelihoods (..., K) and the chances before (K,)."""
+    """(..., K) posterior chances of every τ, by log likelihoods (..., K) and prior chances (K,)."""
     share = prior * np.exp(log_likelihood - log_likelihood.max(axis=-1, keepdims=True))
     return np.asarray(share / share.sum(axis=-1, keepdims=True))
 

@@ -21,7 +21,7 @@ laboratory was kept at its set point."""
 ENOUGH = 5
 """Sessions with a temperature, at least: level, coefficient and two numbers that speak against it."""
 ENOUGH_TO_BEND = 6
-"""The same of a parabola, which has a number more."""
+"""Sessions with a temperature, at least, for a parabola, which has a number more."""
 BENT = 1 / 3
 """Part of the level at which a parabola is taken in place of a line: both together are found by chance as rarely as is
 said."""
@@ -38,7 +38,7 @@ class Warmth:
     size: Array
     """(q, k) b, T per °C, and c of a parabola, T per °C²."""
     covariance: Array
-    """(k, q, q) of each component's, T per °C and T per °C², squared."""
+    """(k, q, q) covariance of each component's coefficients, T per °C and T per °C², squared."""
     p_value: float
     is_found: bool
 
@@ -168,7 +168,7 @@ def _columns(temperature: Array) -> Array:
 
 
 def shown_columns(temperature: Array) -> Array:
-    """(n, q) of `_columns` that sessions at so many °C (n,) show: both where they can bend, else the line."""
+    """(n, q) those of `_columns` that sessions at (n,) °C determine: both where they can bend, else the line."""
     return _columns(temperature)[:, : 2 if _can_bend(temperature) else 1]
 
 

@@ -41,7 +41,9 @@ class LongLog:
     parts: Callable[[], Iterator[CalibrationSession]]
     """All its rows, in order, some at a time, each part as a session; anew at every call."""
     labels: Callable[[], Iterator[Array]] | None
-    """(r, k) what labels the rows of each part: position, or the settings of a stand; None where nothing does."""
+    """Yields the (r, k) labels of the rows of each part: position, or the settings of a stand; None where rows have no
+    labels.
+    """
 
 
 def labelled_rests(log: LongLog, *, positions: bool) -> Intervals:

@@ -168,7 +168,9 @@ class RowTally:
         return any((drift[:, i] > far_turn(sensor)).any() for i, sensor in self._accelerometers())
 
     def moving(self, jitter: Array) -> NDArray[np.bool_]:
-        """(n,) as `estimator.static.moving`; ``jitter`` (n, m) sums of the squared changes, reading units squared."""
+        """(n,) rests in which the block moves, as `estimator.static.moving`; ``jitter`` (n, m) sums of the squared
+        changes, reading units squared.
+        """
         moves = np.zeros(len(self.rests), dtype=bool)
         noise = jitter / (2 * self.rests.samples * (self.rests.samples // PIECES))[:, None]
         drift = self.drift()

@@ -31,7 +31,9 @@ from estimator.significance import critical_chi2
 LEVEL = 1e-5
 """Chance that a sound recording is given a fault, if motion is as modelled: far below that of a change."""
 SIGN_LEVEL = 1e-6
-"""The same of noise and delays: variances of a few samples have longer tails than normal."""
+"""Chance that a sound recording is given a fault of noise or delay: variances of a few samples have longer tails than
+normal.
+"""
 SKEW = 0.1
 """Share of a change, in energy, that may lie across: a third of a radian, by motion meanwhile and clipped samples."""
 WRONG_SENSOR = 0.01
@@ -41,7 +43,7 @@ NAMED = 5
 LATE = 0.85
 """Factor on the critical z for lateness: onsets alone are tried, and the larger noise of two is taken."""
 ASKEW = 0.03
-"""The same of lateness, which bias, load and clipped samples do not bend."""
+"""Share of a change to lateness, in energy, that may lie across; bias, load and clipped samples do not bend it."""
 FOLLOWED = 4.0
 """z from which a sensor is late, where parity already flutters with motion as it does beside a late sensor only."""
 OVER_NOISE = 2.0

@@ -46,7 +46,7 @@ class ParityReference:
     tangents: Array
     """(m, 3, 2) orthonormal, orthogonal to each axis, dimensionless."""
     covariance: Array
-    """(5 m, 5 m) of the reference, SI with scale relative; zero where it does not know an element."""
+    """(5 m, 5 m) covariance of the reference, SI with scale relative; zero where it does not know an element."""
     repeatability: Array
     """(m,) one sigma of the zero from one use to the next, m/s² (rad/s)."""
     position: Array | None
@@ -73,12 +73,13 @@ class ParityReference:
         )
 
     def inputs(self, readings: Array) -> Array:
-        """(R, m) what the sensors say was applied, m/s² (rad/s): u/K − b − c·a², from readings (R, n) of all n sensors
-        of the recording, reading units."""
+        """(R, m) applied inputs by the sensors, m/s² (rad/s): u/K − b − c·a², from readings (R, n) of all n sensors of
+        the recording, reading units.
+        """
         return self.felt(readings[:, self.column])
 
     def felt(self, readings: Array) -> Array:
-        """(R, m) the same from the readings (R, m) of these sensors alone."""
+        """(R, m) applied inputs from the readings (R, m) of these sensors alone."""
         w = (readings - self.offset) / self.scale - self.bias
         return 2.0 * w / (1.0 + np.sqrt(np.maximum(1.0 + 4.0 * self.quadratic * w, 0.0)))
 
@@ -87,7 +88,7 @@ class ParityReference:
         return np.asarray(self.scale * (inputs + self.bias + self.quadratic * inputs**2) + self.offset)
 
     def others(self, inputs: Array) -> Array:
-        """(R, m) what the others say that each sensor feels, m/s² (rad/s), from inputs (R, m)."""
+        """(R, m) input of each sensor as the others predict it, m/s² (rad/s), from inputs (R, m)."""
         return np.asarray(inputs - inputs @ self.parity @ self.parity.T / np.maximum(self.visible, LEAST_VISIBLE))
 
     def vector(self, inputs: Array) -> Array:

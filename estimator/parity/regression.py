@@ -60,9 +60,11 @@ class ParityChange:
     noise: Array
     """(q, q) covariance of θ.ravel() from the recording's noise, (m/s²)² ((rad/s)²)."""
     known: Array
-    """(q, q) the same from the reference calibration and the stated repeatability."""
+    """(q, q) covariance of θ.ravel() from reference calibration and stated repeatability, (m/s²)² ((rad/s)²)."""
     motion: Array
-    """(q, q) the same from what motion does to sound sensors (`freed`); zero where nothing was allowed for."""
+    """(q, q) covariance of θ.ravel() from the effects of motion on sound sensors (`freed`), (m/s²)² ((rad/s)²); zero
+    where nothing was allowed for.
+    """
     dof: float
     """Groups less what was fitted to each sensor."""
     residual_rms: float
@@ -76,7 +78,7 @@ class ParityChange:
 
     @property
     def covariance(self) -> Array:
-        """(q, q) of θ.ravel(), (m/s²)² ((rad/s)²)."""
+        """(q, q) covariance of θ.ravel(), (m/s²)² ((rad/s)²)."""
         return self.noise + self.known + self.motion
 
     @property
@@ -85,7 +87,9 @@ class ParityChange:
         return self.excited.shape[1] == 4
 
     def signature(self, sensor: int, rows: Array) -> Array:
-        """(q, k) of one sensor, m/s² (rad/s) per unit of the change, from k columns of its row of ΔA, rows (4, k)."""
+        """(q, k) signature of a change of one sensor, m/s² (rad/s) per unit of it, from k columns of its row of ΔA,
+        rows (4, k).
+        """
         z = self.excited.T @ rows
         return np.einsum("sk,d->sdk", z, self.reference.parity[sensor]).reshape(-1, rows.shape[1])
 

@@ -142,7 +142,7 @@ class ParityResult(
     slope: Array
     """(d, 3) change per unit of the applied vector in parity space, dimensionless."""
     covariance: Array
-    """(4 d, 4 d) of (constant, g·slope columns), (m/s²)² ((rad/s)²); only what is ``excited`` is known."""
+    """(4 d, 4 d) covariance of (constant, g·slope columns), (m/s²)² ((rad/s)²); only what is ``excited`` is known."""
     excited: Array
     """(4, s) directions of (1, n/g) that the recording excites, dimensionless."""
     unobservable: int

@@ -25,7 +25,7 @@ class ToleranceSet:
     """rad."""
 
     def row(self) -> Array:
-        """(4,) in the order of `PARAMETERS`, SI, relative for scale; infinite where not judged."""
+        """(4,) tolerances in the order of `PARAMETERS`, SI, relative for scale; infinite where not judged."""
         values = [getattr(self, name) for name in PARAMETERS]
         return np.array([np.inf if v is None else v for v in values], dtype=float)
 
@@ -77,7 +77,7 @@ class Sweep:
     total: Array
     """(k, 4) one sigma by `PARAMETERS`; NaN where not observed."""
     repeatability: Array
-    """(k, 4) the same from session to session on one stand."""
+    """(k, 4) one sigma from session to session on one stand, by `PARAMETERS`; NaN where not observed."""
     conditioning: Array
     """(k,) ρ."""
 
@@ -104,7 +104,7 @@ class Plan(
     elevation: float
     """rad."""
     formula_elevation: float
-    """(6) for this stand and N, rad."""
+    """Elevation by formula (6) for this stand and N, rad."""
     positions: int
     """N of each run."""
     seconds: float

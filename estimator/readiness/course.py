@@ -30,13 +30,15 @@ TAUS = 60.0 * 1.3 ** np.arange(20)
 PAIRS = np.array([(0, 0), *((j, j) for j in range(len(TAUS))), *combinations(range(len(TAUS)), 2)])
 """Numbers of the τ: none, which uses neither, then one, which uses the first, then two."""
 SETTLINGS = np.tile(PAIRS, (2, 1))
-"""(J, 2) of every shape of the course: first without a steady drift, then with one."""
+"""(J, 2) numbers of the τ of every shape of the course: first without a steady drift, then with one."""
 STEADY = np.repeat([0, 1], len(PAIRS))
 """(J,) whether there is a steady drift."""
 USED = np.tile([0] + [1] * len(TAUS) + [2] * (len(PAIRS) - len(TAUS) - 1), 2)
-"""(J,) settlings of each."""
+"""(J,) number of settlings of each shape."""
 PRIOR = np.log(1 / 3 / np.bincount(USED)[USED])
-"""(J,) of each: none, one and two settlings are as likely beforehand, and so is a steady drift or none."""
+"""(J,) ln prior chance of each shape: none, one and two settlings are as likely beforehand, and so is a steady drift or
+none.
+"""
 WALKS = np.concatenate([[0.0], np.logspace(-3, 3, 7)])
 """ρ, the walk's variance over the record in variances of one mean: from far below what a hundred means show to where
 white noise no longer matters."""
@@ -60,7 +62,7 @@ class SettlingCourse:
     tau: Array
     """(C, 2) s."""
     mean: Array
-    """(C, 3) of d and both a, m/s² or rad/s; of what is not there zero."""
+    """(C, 3) means of d and both a, m/s² or rad/s; zero for what is not in the shape."""
     root: Array
     """(C, 3, 3) lower root of their covariance over σ², dimensionless."""
     scatter: Array

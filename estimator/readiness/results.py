@@ -78,7 +78,7 @@ class DriftOutlook(
     needed: float | None
     """s more of record until it can be judged; None where it can, or no length of it would do."""
     wander: float
-    """One sigma of its own slow noise over the programme, m/s² or rad/s (K)."""
+    """One sigma of the sensor's own slow noise over the programme, m/s² or rad/s (K)."""
     bias_share: float | None = None
     """The bound as a share of the tolerance of the bias."""
     scale_share: float | None = None

@@ -27,7 +27,7 @@ class Interval:
         return self.low <= value <= self.high and (value == 0 or abs(value) >= self.smallest)
 
     def held_by(self, values: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """(R,) which of the values it holds; none that is NaN."""
+        """(R,) whether each value lies in the interval; False for NaN."""
         with np.errstate(invalid="ignore"):
             inside: NDArray[np.bool_] = (values >= self.low) & (values <= self.high)
             return inside & ((values == 0) | (np.abs(values) >= self.smallest))

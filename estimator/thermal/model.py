@@ -116,9 +116,9 @@ class ThermalEquations:
     local: Array
     """(R, m, p) derivative by the sensor's own elements."""
     shared: Array
-    """(R, m, 5) by the setting's."""
+    """(R, m, 5) derivative by the setting's elements."""
     inverse: Array
-    """(G, 5, 5) of the settings' own information."""
+    """(G, 5, 5) inverse of the settings' own information."""
     coupling: Array
     """(G, P, 5)"""
     setting_gradient: Array

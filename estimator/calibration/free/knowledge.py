@@ -83,7 +83,7 @@ def of_accelerometers(solution: Solution, sigma: Array, scale: Array, g: float) 
 
 
 def to_bias(offset: Array, gain: Array) -> Array:
-    """(5 m, 5 m) from the search's elements to ln K, b/g, c·g and the axis' turns: b/g = o·exp(−λ).
+    """(5 m, 5 m) transformation of the search's elements to ln K, b/g, c·g and the axis' turns: b/g = o·exp(−λ).
 
     offset, gain : (m,) o and exp(λ), dimensionless.
     """

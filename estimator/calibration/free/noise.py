@@ -62,7 +62,7 @@ class ProjectedNoise:
     lean: Array
     """(R, m, F) dependence of the fitted value of each reading on the seen directions."""
     residual: Array
-    """(R, m) in sigmas."""
+    """(R, m) residuals in sigmas."""
     takes_part: Array
     """(R, m) bool"""
 

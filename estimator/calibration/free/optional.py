@@ -111,7 +111,7 @@ def starts_around(solution: Solution) -> list[Unknowns]:
 
 
 def without_terms(unknowns: Unknowns) -> Unknowns:
-    """The same without quadratic terms."""
+    """The unknowns without quadratic terms."""
     return replace(unknowns, quadratic=np.zeros_like(unknowns.quadratic))
 
 

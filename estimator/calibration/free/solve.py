@@ -28,7 +28,9 @@ LEAST_DAMPING = 1e-12
 """Relative to the largest information: less is rounding, and damping must be able to grow back in a few steps."""
 
 FIRST_DAMPING = 1e-4
-"""The same, at the start, which is good to a few per cent: nearly a Gauss–Newton step."""
+"""Damping at the start, relative to the largest information. The start is good to a few per cent: nearly a Gauss–Newton
+step.
+"""
 
 LONGEST = 0.5
 """Dimensionless; no element moves further in one step; a turn along a tangent means little beyond."""

@@ -18,8 +18,9 @@ PLAIN = 0.02
 misalignment of a real block, above the noise of a poor one."""
 
 SLIGHT = (0.05, 0.005, 0.0005)
-"""The same for the quadric, tried in turn: below it the sphere's shape is kept. Few orientations need a small one
-when they are precise and a large one when they are plain."""
+"""Singular values of the quadric below this part of the largest carry noise; tried in turn, and below it the sphere's
+shape is kept. Few orientations need a small one when they are precise and a large one when they are plain.
+"""
 
 LEAST_GAIN = 1e-6
 """Least gain relative to nominal; a sensor below it is dead, and its scale's logarithm must stay finite."""

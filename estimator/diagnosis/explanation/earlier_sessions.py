@@ -35,7 +35,7 @@ class Effect:
 
     @property
     def absent(self) -> "Effect":
-        """The same with no effect."""
+        """The effect with amplitude and covariance zero."""
         return replace(self, amplitude=0 * self.amplitude, covariance=0 * self.covariance)
 
 

@@ -163,7 +163,9 @@ def in_orientations(session: CalibrationSession, cells: Sequence[Cells]) -> list
 
 
 def _covariance(solution: Solution, i: int, rows: Array) -> Array | None:
-    """(k, k) of the predictions of sensor i in ``rows`` (k,), relative to g; None where the fit leaves one open."""
+    """(k, k) covariance of the predictions of sensor i in ``rows`` (k,), relative to g; None where the fit leaves one
+    open.
+    """
     linear, known = linearise(solution.rows, solution.unknowns), solution.knowledge
     sigma = solution.rows.sigma[rows, i]
     local, shared = linear.local[rows, i] * sigma[:, None], linear.shared[rows, i] * sigma[:, None]

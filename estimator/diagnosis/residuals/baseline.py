@@ -118,7 +118,7 @@ class Baseline:
     residual: Array
     """(R, m) measured minus simulated, at the input, m/s² (rad/s)."""
     variance: Array
-    """(R, m) of the independent noise at the input, (m/s²)² ((rad/s)²)."""
+    """(R, m) variance of the independent noise at the input, (m/s²)² ((rad/s)²)."""
     unstated: Array
     """(m,) bool: the noise is estimated from these residuals."""
     constant: Array

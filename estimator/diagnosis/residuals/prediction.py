@@ -43,7 +43,7 @@ class Prediction:
 
     @property
     def scale_free(self) -> float:
-        """The same, but for a constant, where the scale of the noise is whatever the errors say."""
+        """Log predictive density, but for a constant, where the scale of the noise is estimated from the errors."""
         return -0.5 * (self.count * float(np.log(self.square)) + self.volume)
 
 

@@ -47,7 +47,7 @@ def turned_session(session: CalibrationSession, turn: Array) -> CalibrationSessi
 
 
 def turned_baseline(baseline: Baseline, turn: Array) -> Baseline:
-    """The same baseline in block axes turned by (3, 3), dimensionless: its residuals and noise stay as they are.
+    """The baseline in block axes turned by (3, 3), dimensionless: its residuals and noise stay as they are.
 
     So does what the fit takes of the readings. Along the tangents of the turned axes the parameters are others, by an
     orthogonal C: what is worked out of the baseline is carried over instead of worked out anew.

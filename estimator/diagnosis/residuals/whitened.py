@@ -27,7 +27,7 @@ class ParameterChange:
     deviation: Array
     """(P,) standard errors: deviation of this session's parameters from the history."""
     inverse_root: Array
-    """(P, P) of the deviation's covariance: whitens a dimensionless parameter change."""
+    """(P, P) inverse root of the deviation's covariance: whitens a dimensionless parameter change."""
     earlier: tuple["EarlierSession", ...] = ()
     """The sessions that the reference is made of."""
 

@@ -67,7 +67,7 @@ class Tails:
 
     @property
     def evenly(self) -> "Tails":
-        """The same where every ν was as likely beforehand."""
+        """The posterior distribution for a uniform prior of ν."""
         weight = self.weight / PRIOR
         return replace(self, weight=weight / weight.sum())
 
@@ -121,7 +121,7 @@ def scale_of(residuals: Array, freedom: float) -> float:
 
 
 def weights(residuals: Array, freedom: float, scale: float) -> Array:
-    """(N,) how much a residual counts, dimensionless: one for normal errors."""
+    """(N,) weights of the residuals, dimensionless: one for normal errors."""
     if np.isinf(freedom):
         return np.ones_like(residuals)
     return np.asarray((freedom + 1) / (freedom + (residuals / scale) ** 2))

@@ -28,8 +28,10 @@ MISFIT = 0.05
 they are the nearest to, below it a cause described nearly, with something small beside it."""
 
 DEPARTURE = 1.0
-"""The same of a sensor that follows a shared course: it may depart from it besides by as much as it follows it. Without
-its share of the course in the model it would pull what all sensors share of a row."""
+"""Share of the energy of names that structure may hold beside a sensor that follows a shared course: it may depart from
+the course by as much as it follows it. Without its share of the course in the model it would pull what all sensors
+share of a row.
+"""
 
 DOUBTFUL = 0.02
 """p-value of normal noise below which scatter in excess is called none: one true excess in fifty loses its name."""

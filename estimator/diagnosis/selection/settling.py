@@ -209,7 +209,7 @@ def variance_between(one: Comparable, other: Comparable) -> Array:
 
 
 def at_places(value: Array, places: Sequence[int]) -> Array:
-    """(m, 5) of which some places of every sensor have its ``value`` (m,), and the others none."""
+    """(m, 5) array that holds every sensor's ``value`` (m,) in some places and zero in the others."""
     found = np.zeros((len(value), 5))
     found[:, places] = value[:, None]
     return found
@@ -231,7 +231,7 @@ class Difference:
         return Difference(self.information - kept @ along.T, self.score - kept @ (directions.T @ self.score))
 
     def beyond(self, variance: Array) -> "Difference":
-        """The same where it varies by a ``variance`` (P,) more."""
+        """The difference where it varies by a ``variance`` (P,) more."""
         more = np.eye(len(variance)) + self.information * variance
         both = np.linalg.solve(more, np.column_stack([self.information, self.score]))
         return Difference(both[:, :-1], both[:, -1])

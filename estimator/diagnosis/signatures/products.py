@@ -100,8 +100,9 @@ class Products:
         return cls(*(np.concatenate(x, axis=1) for x in zip(*((p.square, p.along) for p in parts), strict=True)))
 
     def continued(self, change: Array, z: Array) -> "Products":
-        """The same with further columns that show in the last part alone, where all are ``change`` (S, P, q + …),
-        standard errors per unit, of P rows with the residuals ``z`` (P,)."""
+        """The products with further columns that show in the last part alone, where all columns are ``change`` (S, P, q
+        + …), standard errors per unit, of P rows with the residuals ``z`` (P,).
+        """
         K, S, q = self.along.shape
         square, along = np.zeros((K, S, *change.shape[2:] * 2)), np.zeros((K, S, change.shape[2]))
         square[:-1, :, :q, :q], along[:-1, :, :q] = self.square[:-1], self.along[:-1]
@@ -196,7 +197,7 @@ class RemainingProducts:
 
     @cached_property
     def parts(self) -> Products:
-        """The same in every part."""
+        """The products after projection in every part."""
         before = self.before[0] if len(self.before) == 1 else Products.together(self.before)
         if not self.shared.shape[1]:
             return before
