@@ -82,14 +82,14 @@ class Figure:
     ours: float
     """s, or in ``unit``."""
     theirs: float
-    """The same of the peer, or what ours may be at most."""
+    """The peer's figure, or the most that ours may be; same unit."""
     target: str
     """The least ratio: a number or a fraction, words before it; — where nothing is aimed at."""
     unit: str = "s"
 
     @property
     def ratio(self) -> float:
-        """How many times faster, or smaller, than the peer."""
+        """The peer's figure over ours: how many times faster, or smaller, ours is."""
         return self.theirs / self.ours
 
     @property

@@ -37,7 +37,7 @@ def _size(rng: np.random.Generator) -> float:
 
 
 def still(t: Array, rng: np.random.Generator) -> Array:
-    """Nothing but white noise."""
+    """A course of zero: white noise alone."""
     return np.zeros_like(t)
 
 

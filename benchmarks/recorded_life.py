@@ -80,7 +80,7 @@ class Course:
 
 @cache
 def array() -> dict[str, CalibrationSession]:
-    """Its sessions by name, oldest first, dated."""
+    """The array's sessions by name, oldest first, dated."""
     return {r.name.removeprefix("kth-mimu-"): dated(r.name, r.session) for r in recordings("kth-mimu")}
 
 

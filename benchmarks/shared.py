@@ -92,7 +92,7 @@ class Answer:
 
 
 def wishes(sessions: int, seed: int) -> Iterator[Wish]:
-    """So many sessions of every kind; sound ones four times as many."""
+    """Wishes for ``sessions`` sessions of every kind; for sound ones four times as many."""
     for b, block in enumerate(BLOCKS):
         for c, course in enumerate(COURSES):
             yield from (Wish(SHARED, block, course, STRENGTH, (seed, 1, b, c, k)) for k in range(sessions))

@@ -63,9 +63,9 @@ class Lived:
     flagged: bool
     """Whether any parameter is said to jump or drift."""
     found: tuple[bool, ...]
-    """For every law with an effect of `SHOWN` or more, whether it is found."""
+    """Whether each law with an effect of `SHOWN` or more is found."""
     claimed: tuple[bool, ...]
-    """The same of parameters that follow nothing."""
+    """Whether a law is found for each parameter that follows nothing."""
 
 
 @dataclass(frozen=True)
@@ -177,7 +177,7 @@ def is_named(seed: tuple[int, ...]) -> bool:
 
 @dataclass(frozen=True)
 class Answers:
-    """Everything that was measured."""
+    """All results."""
 
     lived: dict[str, list[Lived]]
     carried: dict[str, list[Carried]]

@@ -69,9 +69,9 @@ class Answer:
     undecided: bool
     """Whether it was neither fit nor unfit then."""
     covered: tuple[bool, ...]
-    """For each corrected parameter, whether U covers what is left: nothing moved."""
+    """Whether U covers the remainder of each corrected parameter: nothing moved."""
     shares: tuple[float, ...]
-    """For each of them, U in tolerances."""
+    """U of each corrected parameter, in tolerances."""
     found: bool
     """Whether a sensor whose bias has moved by 150 µg is called unfit by the law, for its bias."""
     excused: bool
@@ -91,7 +91,7 @@ class Judged:
 
 
 def law_of(kind: str, rng: np.random.Generator) -> Array:
-    """(2, 4, 2) as `draw_law` has it."""
+    """(2, 4, 2) laws of one kind, as `draw_law` gives them."""
     if kind == LOOSE:
         line, bend = draw_law(4, rng, curved=False), draw_law(4, rng, curved=True)
         return np.stack([line[..., 0], BEND * bend[..., 1]], axis=-1)
@@ -187,7 +187,7 @@ def _is_excused(scene: Scene, laws: Sequence[TypeLaw]) -> bool:
 
 
 def _stayed(world: Session, changed: Session, half: int, rng: np.random.Generator) -> tuple[Seen, ...]:
-    """So many sessions at 20 °C, and one more at 35 °C of the unit changed."""
+    """``half`` sessions at 20 °C, and one more than that at 35 °C of the changed unit."""
     nothing = np.zeros((2, world.unit.size, 2))
     before = [Unit(world, nothing, 0.0).at(ROOM + rng.normal(0, 1), i, rng) for i in range(half)]
     after = [Unit(changed, nothing, 0.0).at(WARM + rng.normal(0, 1), half + i, rng) for i in range(half + 1)]

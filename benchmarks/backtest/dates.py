@@ -45,7 +45,7 @@ class Source:
 
     name: str
     kinds: tuple[str, ...]
-    """Nothing moves in the first."""
+    """Kinds of histories; nothing moves in the first."""
     units: Callable[[list[tuple[str, ...]], Random], list[tuple[History, ...]]]
     """Parameters of units, each of a kind."""
     law: Law | None
@@ -61,7 +61,7 @@ class Statement:
     reach_90: float
     reach_50: float
     chances: Array
-    """(h,) that the tolerance is passed within `HORIZONS`, of one that is within it now."""
+    """(h,) chances that the tolerance is passed within `HORIZONS`, for a parameter that is within it now."""
     known: float | None
     """The chance that the tolerance is passed by the second date, by somebody who knows the generator; None where
     nobody does, or none is stated."""
@@ -132,7 +132,7 @@ def statements(source: Source, sample: Sample, rng: Random) -> list[Statement]:
 
 
 def _within(chance: Array) -> Array:
-    """(h,) by `HORIZONS`, of chances at `AHEAD`, given that it is within its tolerance now."""
+    """(h,) chances by `HORIZONS`, from those at `AHEAD`, given that the parameter is within its tolerance now."""
     now = float(chance[0])
     return np.asarray((np.interp(HORIZONS, AHEAD, chance) - now) / max(1 - now, 1e-9))
 
@@ -146,7 +146,7 @@ def _believed(one: History, law: Law, date: float, rng: Random) -> float | None:
 
 
 def held(found: Iterable[Statement], date: Callable[[Statement], float]) -> Rate:
-    """How often the tolerance was passed by a date, where one within the horizon was stated."""
+    """Rate at which the tolerance was passed by a date, where one within the horizon was stated."""
     horizon = float(AHEAD[-1])
     return rate([one.passed <= date(one) for one in found if date(one) < horizon])
 

@@ -56,13 +56,13 @@ def tails_of(world: World, rng: np.random.Generator) -> Array:
 
 
 def made(world: World, kind: str, of: tuple[int, Plan], rng: np.random.Generator) -> list[History]:
-    """So many histories of a kind, by a plan."""
+    """Histories of one kind: how many, and by what plan, is ``of``."""
     count, plan = of
     return [world.made(kind, plan, rng) for _ in range(count)]
 
 
 def found(kind: str, count: int, tails: Array, rng: np.random.Generator) -> list[bool]:
-    """For each history, whether a change is found at 5 % over all parameters of its unit."""
+    """Whether a change is found in each history, at 5 % over all parameters of its unit."""
     return [p_value(one, tails) < SINGLE for one in made(FIRST, kind, (count, FIRST.plan), rng)]
 
 

@@ -104,7 +104,7 @@ def _reached(one: History, world: World, of: tuple[Prior, bool], rng: np.random.
 
 
 def before(found: Sequence[Reached], whose: int = 0) -> Rate:
-    """How often the tolerance was passed before the date, where one within the horizon was stated."""
+    """Rate at which the tolerance was passed before the date, where one within the horizon was stated."""
     horizon = float(AHEAD[-1])
     return rate([one.passed < one.early[whose] for one in found if one.early[whose] < horizon])
 

@@ -88,7 +88,7 @@ def history(kind: str, time: Array, plan: Plan, rng: np.random.Generator) -> His
 
 
 def errors(freedom: float, count: int, rng: np.random.Generator) -> Array:
-    """(count,) in standard deviations."""
+    """(count,) errors in standard deviations."""
     if np.isinf(freedom):
         return rng.standard_normal(count)
     return rng.standard_t(freedom, count) * np.sqrt((freedom - 2) / freedom)

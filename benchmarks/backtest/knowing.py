@@ -76,7 +76,7 @@ def early(one: History, law: Law, level: float, rng: Random) -> float:
 
 
 def known_dates(one: History, law: Law, levels: tuple[float, ...], rng: Random) -> tuple[float, ...]:
-    """The same for several chances, given that it is within its tolerance now."""
+    """Dates for several chances, as `early`, given that the parameter is within its tolerance now."""
     inside = known_passages(one, law, rng)
     if not len(inside):
         return tuple(float("inf") for _ in levels)
@@ -112,7 +112,7 @@ def _drawn(kind: str, one: History, law: Law, days: Array, rng: Random) -> _Kind
 
 
 def _signs(one: History) -> Array:
-    """(n,) of e₀ in every reading: the reference's own, and taken off all others."""
+    """(n,) sign of e₀ in every reading: plus in the reference itself, minus in all others."""
     return np.append(1.0, np.full(len(one.time) - 1, -1.0))
 
 
@@ -141,7 +141,7 @@ def _unsized(one: History, law: Law, moved: Array, ahead: Callable[[Array], Arra
 
 
 def _log_likelihood(one: History, law: Law, moved: Array, origin: Array) -> Array:
-    """(N,) of what moved by (N, n) since the reference, whose error is ``origin`` (N,), T."""
+    """(N,) log likelihood of readings that moved by (N, n) since the reference, whose error is ``origin`` (N,), T."""
     errors = np.column_stack([origin, one.value[1:] - moved[:, 1:] + origin[:, None]])
     return np.asarray((law.log_error(errors / one.sigma) - np.log(one.sigma)).sum(axis=1))
 

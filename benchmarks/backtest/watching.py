@@ -47,7 +47,7 @@ def ours(history: History) -> Array:
 
 
 def first(history: History, k: int) -> History:
-    """Its first k sessions."""
+    """The first k sessions of the history."""
     parts = (history.time[:k], history.value[:k], history.sigma[:k], history.temperature[:k])
     return History(history.kind, history.truth, history.onset, *parts)
 

@@ -26,7 +26,7 @@ class World:
     plan: Plan
     """Plan of histories in which changes are looked for; a change may show in the last session alone."""
     long: Plan
-    """The same of long histories."""
+    """Plan of long histories in which changes are looked for."""
     sessions: Mapping[str, tuple[int, int]]
     """Fewest and most, of units whose due date is looked at."""
     dates: Callable[[Plan, np.random.Generator], Array]

@@ -98,7 +98,7 @@ def gain_table(gain: Gain) -> str:
 
 
 def section(diagnosis: Diagnosis) -> str:
-    """Everything that is said of one session, without its picture."""
+    """The words on one session, without its picture."""
     parts = [*(finding_section(f) for f in diagnosis.findings), unexplained(diagnosis), misjudged(diagnosis)]
     said = [p for p in parts if p] or [NOTHING]
     return "\n\n".join([*said, gain_table(diagnosis.gain)])

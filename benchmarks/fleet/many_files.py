@@ -56,7 +56,7 @@ def _content(unit: str, number: int) -> bytes:
 
 
 def _copy_files(storage: Storage, connection: Connection, times: int) -> None:
-    """The same readings under another serial number have another hash; where each is kept goes into a table."""
+    """Stores copies of the files under other serial numbers, each with a hash of its own, and lists them in a table."""
     connection.execute(
         text("CREATE TEMPORARY TABLE copied (old text, n int, id text, sha256 text, PRIMARY KEY (old, n))")
     )

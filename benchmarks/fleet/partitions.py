@@ -73,7 +73,7 @@ def written(url: str) -> str:
 
 
 def copy(connection: Connection, layout: str, table: str) -> None:
-    """The same rows in another layout."""
+    """Copies the rows into another layout."""
     connection.execute(f"CREATE TABLE {table} (LIKE parameters) {LAYOUTS[layout]}")
     if layout == "by unit":
         for k in range(PARTS):

@@ -121,7 +121,7 @@ class Tally:
                 self.find(f"{name}, alone: {status} in {seconds:.1f} s")
 
     def find(self, text: str) -> None:
-        """Something that must not be."""
+        """Prints and records a finding."""
         print(text, flush=True)
         self.finds.append(text)
 
@@ -194,7 +194,7 @@ def _upload(running: Service, tally: Tally, group: str, name: str, content: Call
 
 
 def _read(running: Service, tally: Tally, id: str) -> None:
-    """Everything that is made of a stored session."""
+    """Asks for everything that the service makes of a stored session."""
     unit = running.client.get(f"{running.address}/api/v1/sessions/{id}").json()["unit"]
     paths = (*(f"/api/v1/sessions/{id}{part}" for part in PARTS), f"/sessions/{id}", f"/units/{unit}")
     for path in (*paths, f"/api/v1/units/{unit}/usable"):

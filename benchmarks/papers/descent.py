@@ -95,7 +95,7 @@ def descend(
 
 
 def levenberg_marquardt(problem: Triples, start: Array | None = None) -> Search:
-    """The same functional by MINPACK's Levenberg–Marquardt with the exact Jacobian; start (P,) dimensionless."""
+    """Minimises the functional by MINPACK's Levenberg–Marquardt with the exact Jacobian; start (P,) dimensionless."""
     x = np.zeros(len(problem.free)) if start is None else start
     solution = least_squares(problem.misses, x, jac=problem.jacobian, method="lm", xtol=1e-14, ftol=1e-14, gtol=1e-14)
     return Search(

@@ -23,7 +23,7 @@ NOISE = 2.5e-6
 
 
 def elevations() -> str:
-    """(6) for the paper's stand, and the elevation that the Jacobians ask for."""
+    """The elevation by (6) for the paper's stand, and the one that the Jacobians ask for."""
     rows: list[tuple[object, ...]] = []
     base = schedule(ACCELEROMETERS, 24)
     variation, g = ACCELEROMETERS.conditions.bias_variation, ACCELEROMETERS.conditions.magnitude

@@ -56,7 +56,7 @@ class Accuracy:
     bias: Array
     """(...,) (m/s²)² or (rad/s)²."""
     axis: Array
-    """(...,) of both turns together, rad²."""
+    """(...,) variance of both turns together, rad²."""
 
 
 def gyro_conditions(c: Conditions, latitude: float) -> Conditions:

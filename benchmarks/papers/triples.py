@@ -95,7 +95,7 @@ class Triples:
         return full.reshape(R * T, 4 * m)[:, self.free]
 
     def axis_derivative(self, full: Array) -> Array:
-        """(m, 3, 2) of each unit axis by its α and β, 1/rad, at all elements (m, 4)."""
+        """(m, 3, 2) derivative of each unit axis by its α and β, 1/rad, at all elements (m, 4)."""
         raw = self.nominal_axes + (self.frames @ full[:, 2:, None])[..., 0]
         length = np.linalg.norm(raw, axis=1)[:, None, None]
         e = raw[:, :, None] / length

@@ -88,7 +88,8 @@ def expected(path: Path, setting: FilterSetting, model: InertialModel) -> Expect
 
 
 def gramian(path: Path, setting: FilterSetting, model: InertialModel) -> Array:
-    """(n, n) of the states but ς at the start, dimensionless, in units of `USEFUL`; no prior and no gyro noise.
+    """(n, n) observability Gramian of the states but ς at the start, dimensionless, in units of `USEFUL`; no prior and
+    no gyro noise.
 
     Every step's velocity counts with the scatter that white accelerometer noise gives it.
     """

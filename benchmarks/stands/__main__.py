@@ -30,7 +30,7 @@ STILL = 4
 
 
 def steady(stand: int, time: float) -> float:
-    """Nothing moves."""
+    """Motion of a stand that stays."""
     return 0.0
 
 
@@ -89,7 +89,7 @@ def known(fleets: int, seed: int, fleet: Fleet) -> tuple[Rate, Rate]:
 
 
 def dated_best(fleets: int, seed: int, fleet: Fleet) -> list[bool]:
-    """For each fleet, whether both dates of the excursion are found by one who knows how blocks are seated."""
+    """Whether both dates of the excursion are found in each fleet by one who knows how blocks are seated."""
     found = []
     for i in range(fleets):
         motions = motions_of(fleet, np.random.default_rng([seed, i]))
@@ -99,7 +99,7 @@ def dated_best(fleets: int, seed: int, fleet: Fleet) -> list[bool]:
 
 
 def told(fleets: int, seed: int, fleet: Fleet) -> list[bool]:
-    """For each fleet, whether three units were measured on the first stand within the month."""
+    """Whether three units were measured on the first stand within the month, in each fleet."""
     found = []
     for i in range(fleets):
         motions = motions_of(fleet, np.random.default_rng([seed, i]))

@@ -31,7 +31,7 @@ def held(m: int, sigma: float, blocks: int, seed: int) -> tuple[Rate, Rate]:
 
 
 def _block(m: int, sigma: float, rng: np.random.Generator) -> list[bool]:
-    """For each axis, the drifted one first, whether U holds its change."""
+    """Whether U holds the change of each axis, the drifted one first."""
     axes = _cone(m)
     size, frames = rng.uniform(*REACH) * TOLERANCE, np.stack([_across(axis) for axis in axes])
     drifted, angle = axes.copy(), rng.uniform(0, 2 * np.pi)

@@ -74,7 +74,7 @@ def measured(m: int, count: int, stated: bool, rng: np.random.Generator) -> tupl
 
 
 def held(result: Calibration, block: Block) -> list[bool]:
-    """For every scale, bias and turn with an uncertainty, whether its interval holds the truth."""
+    """Whether the interval of each scale, bias and turn with an uncertainty holds the truth."""
     found = []
     for i, sensor in enumerate(result.sensors):
         for estimate, true in ((sensor.scale, block.scale[i]), (sensor.bias, block.bias[i])):

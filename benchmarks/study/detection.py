@@ -111,7 +111,7 @@ def drawn(task: Task) -> Case:
 
 
 def perform(task: Task, network: Path | None = None) -> Look | None:
-    """None where no session drawn can hold the effect."""
+    """Draws a session, diagnoses it and compares; None where no session drawn can hold the effect."""
     try:
         case = drawn(task)
     except UnhideableError:

@@ -171,7 +171,7 @@ ONLY_SOUND = {"stand, one sensor ten times noisier"}
 
 
 def wishes(sessions: int, seed: int) -> Iterator[Wish]:
-    """So many sound sessions of every world, and a third as many with an effect."""
+    """Wishes for ``sessions`` sound sessions of every world, and a third as many with an effect."""
     for number, world in enumerate(WORLDS):
         yield from (Wish(world, False, (seed, number, 0, k)) for k in range(sessions))
         with_effect = 0 if world in ONLY_SOUND else sessions // 3

@@ -34,7 +34,7 @@ class Flown:
     sensor: str
     kind: str
     changed: ParityResult | None
-    """None where no size is stated from which on the change is told."""
+    """Result for the changed sensor; None where no size is stated from which on the change is named."""
     size: float | None
 
 

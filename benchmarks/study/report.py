@@ -55,7 +55,7 @@ def mean(values: Iterable[float]) -> str:
 
 
 def pulls_inside(outcomes: list[Outcome]) -> list[bool]:
-    """For every amplitude of a single effect, whether it is within two of its own sigma."""
+    """Whether each amplitude of a single effect is within two of its own sigma."""
     return [abs(p.value) <= 2 for o in of_kind(outcomes, "single") for p in o.pulls]
 
 

@@ -64,7 +64,7 @@ def with_gyros(session: Document, rng: np.random.Generator) -> Document:
 
 
 def settling(session: Document, rng: np.random.Generator) -> Document:
-    """Its means as a log of rests: each turn leaves every zero off by another amount, which settles.
+    """The session's means as a log of rests: each turn leaves every zero off by another amount, which settles.
 
     White noise of a sample is such that it makes a mean as uncertain as the row was.
     """

@@ -68,7 +68,7 @@ class Answer:
 
 
 def wishes(sessions: int, seed: int) -> Iterator[Wish]:
-    """So many sessions of every number of sensors and strength; sound ones, and steps apart."""
+    """Wishes for ``sessions`` sessions of every number of sensors and strength; for sound ones, and steps apart."""
     stand, orientations = BLOCKS[0], BLOCKS[2]
     kinds = [(stand, s, False) for s in STRENGTHS] + [(stand, TOGETHER, True), (orientations, STRENGTHS[-1], False)]
     kinds += [(stand, LARGE, False), (orientations, LARGE, False)]

@@ -58,7 +58,7 @@ class Answer:
 
 
 def wishes(sessions: int, seed: int) -> Iterator[Wish]:
-    """So many sessions of every kind with an effect, and more sound ones."""
+    """Wishes for ``sessions`` sessions of every kind with an effect, and for more sound ones."""
     kinds = list(product(FACTORS, WHO, (False, True)))
     for k, (factor, who, hidden) in product(range(SOUND * sessions), kinds):
         if hidden and k >= sessions:

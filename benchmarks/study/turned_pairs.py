@@ -180,7 +180,9 @@ def _drift(wish: Wish, world: Session, rng: np.random.Generator) -> Effect:
 
 
 def _drift_at_rest(wish: Wish, world: Session, rng: np.random.Generator) -> Effect:
-    """The same in arbitrary orientations, both sessions like one drawn here; the common turn of the axes left open."""
+    """A drift of one sensor, as strong as wished, in arbitrary orientations, both sessions like one drawn here; the
+    common turn of the axes left open.
+    """
     up = rng.standard_normal((ORIENTATIONS, 3))
     up /= np.linalg.norm(up, axis=1, keepdims=True)
     told = _information(world, up, STATED if wish.programme.stated else np.inf)

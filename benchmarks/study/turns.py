@@ -43,7 +43,7 @@ class Turned:
     verdict: Verdict
     remount: bool
     inside: tuple[bool, ...]
-    """For each component of the turn, whether it lies within two of its sigmas."""
+    """Whether each component of the turn lies within two of its sigmas."""
     drifted: str | None
 
 

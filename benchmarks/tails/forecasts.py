@@ -83,7 +83,7 @@ def tailed(world: World, freedom: float) -> World:
 
 
 def surprised(found: Sequence[Told], whose: int) -> list[bool]:
-    """For each level, whether it is further out than twice its stated uncertainty."""
+    """Whether each level is further out than twice its stated uncertainty."""
     return [abs(one.levels[whose].error) > 2 * one.levels[whose].sigma for one in found]
 
 

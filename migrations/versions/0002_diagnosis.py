@@ -25,7 +25,7 @@ VERDICT = ("verdict", "reason", "worst_sensor", "worst_parameter", "margin")
 
 
 def upgrade() -> None:
-    """Everything that is stored was computed under the baseline model, which is revision 0."""
+    """Adds the revision of the model to everything stored, which was computed under the baseline model: revision 0."""
     for table in ("sessions", *KEYS):
         op.add_column(table, sa.Column("revision", sa.Integer(), nullable=False, server_default="0"))
     for table, key in KEYS.items():

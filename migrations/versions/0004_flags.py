@@ -18,7 +18,7 @@ APPEND_ONLY = ("notes", "note_withdrawals", "notices")
 
 
 def upgrade() -> None:
-    """Nothing is flagged until the next session of a unit."""
+    """Adds flags; none is open until the next session of a unit."""
     op.add_column("sessions", sa.Column("stage", sa.String(20)))
     op.add_column("conditions", sa.Column("flags", sa.Integer(), nullable=False, server_default="0"))
     _services()

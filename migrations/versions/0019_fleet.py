@@ -204,7 +204,7 @@ def _summaries() -> None:
 
 
 def downgrade() -> None:
-    """Nothing is lost that cannot be worked out again."""
+    """Drops the tables of the fleet, which can be worked out again."""
     for table in ("pending_summaries", "stand_conditions", "populations", "stand_tallies", "stand_units",
                   "fleet_tallies", "tallied"):  # fmt: skip
         op.drop_table(table)

@@ -27,6 +27,6 @@ def upgrade() -> None:
 
 
 def downgrade() -> None:
-    """Nothing before knows the terms."""
+    """Drops the noise terms, which earlier releases do not know."""
     op.drop_table("session_noise")
     op.execute(sa.delete(PARAMETERS).where(PARAMETERS.c.parameter.in_(TERMS)))

@@ -34,7 +34,7 @@ SENTENCES = (
 )
 """Columns of sentences."""
 APPEND_ONLY = (("record_states", "why"), ("reference_choices", "why"), ("notices", "text"))
-"""The same in tables whose lines nobody may change; only this change of the schema may."""
+"""Columns of sentences in tables whose lines nobody may change; only this change of the schema may."""
 UNITS = """
 CREATE VIEW health_units AS
 SELECT u.serial AS unit, t.name AS unit_type, u.lot AS lot, u.simulated AS simulated,

@@ -41,13 +41,13 @@ class Lesson(NamedTuple):
 
     design: Design
     prior: Array
-    """(k, p) of what the baseline absorbs, the rows of the stand's constant errors."""
+    """(k, p) rows of the basis that the baseline absorbs for the stand's constant errors."""
     free: Array
     """(m, R) degrees of freedom of every residual."""
     unstated: Array
     """(m,) 1 where the noise is estimated from the residuals."""
     traces: Array
-    """(E, m, R) what each effect leaves at strength 1, standard errors."""
+    """(E, m, R) trace that each effect leaves at strength 1, standard errors."""
     labels: Array
     """(E,) numbers in `log_posterior`; 0 after the last effect."""
     surprise: Array
@@ -93,7 +93,7 @@ def effect(session: Session, residuals: WhitenedResiduals, cause: str, rng: np.r
 
 
 def traced(session: Session, residuals: WhitenedResiduals, drawn: Effect) -> tuple[Array, float]:
-    """(m, R) what an effect leaves, standard errors, and its strength; 0 where it is as good as absorbed."""
+    """(m, R) trace that an effect leaves, standard errors, and its strength; 0 where it is as good as absorbed."""
     column = (signature(session, drawn) / session.unit.scale)[..., None]
     left, (R, m) = residuals.trace(column)[:, 0], column.shape[:2]
     strength, whole = float(np.linalg.norm(left)), np.linalg.norm(residuals.whitened(column))

@@ -40,11 +40,11 @@ class Design(NamedTuple):
     """Features of a session beside its residuals."""
 
     known: Array
-    """(m, R, F) of every reading: how it was held, when, how warm; 0 where the file does not say."""
+    """(m, R, F) features of every reading: how it was held, when, how warm; 0 where the file does not say."""
     basis: Array
-    """(m, R, p) of what the baseline absorbs of whitened readings."""
+    """(m, R, p) basis of the part of whitened readings that the baseline absorbs."""
     direction: Array
-    """(m, R) of what the sensors of a row share."""
+    """(m, R) direction that the sensors of a row share."""
     removed: Array
     """(R,) the share of it that whitening takes away."""
     loud: Array
@@ -117,7 +117,7 @@ def normal(shape: tuple[int, int], rng: np.random.Generator) -> Array:
 
 
 def log_posterior(w: Weights, design: Design, z: Array, xp: ModuleType = np) -> Array:
-    """(d, n, 1 + m·c + C) of sound, of c causes of each sensor, sensor by sensor, and of C causes that all share.
+    """(d, n, 1 + m·c + C) log posterior: sound, c causes of each sensor, sensor by sensor, C causes that all share.
 
     ``z`` (d, m, n, R) whitened residuals; the design has a leading axis d.
     """
@@ -139,11 +139,11 @@ class Filters(NamedTuple):
     v: Array
     """(d, m, n, R) residuals weighted by the inverse of their covariance."""
     taken: Array
-    """(d, m, R, p) what the baseline takes."""
+    """(d, m, R, p) basis of the part that the baseline absorbs."""
     shared: Array
-    """(d, m, R, 1) what the sensors of a row share."""
+    """(d, m, R, 1) direction that the sensors of a row share."""
     own: Array
-    """(d, m, R, 5) as in `Design`."""
+    """(d, m, R, 5) orthonormal basis of the part that each sensor's own parameters absorb."""
 
     @classmethod
     def of(cls, design: Design, z: Array, xp: ModuleType) -> "Filters":

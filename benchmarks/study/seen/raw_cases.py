@@ -44,9 +44,9 @@ class World:
     time: Array
     """(R,) s."""
     counts: Array
-    """(R, 6) with their fractions; whole in files of counts."""
+    """(R, 6) counts with their fractions; whole in files of counts."""
     position: Array
-    """(R,) of the rest, −1 between."""
+    """(R,) number of the rest, −1 between."""
 
 
 @dataclass(frozen=True)
