@@ -15,7 +15,7 @@ Result = TypeVar("Result")
 
 
 def once(function: Callable[Given, Result]) -> Callable[Given, Result]:
-    """The same function. Its result is shared, so that nobody may change it."""
+    """The function, worked out once for equal arguments. Its result is shared, so that nobody may change it."""
     known: dict[bytes, Result] = {}
 
     @wraps(function)

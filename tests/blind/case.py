@@ -90,7 +90,7 @@ def _all_seen(left: Array) -> bool:
 
 
 def effect_columns(session: Session, effect: Effect) -> Array:
-    """(R·m, p) what the fit of an effect could take away, reading units."""
+    """(R·m, p) columns that the fit of an effect could take away, reading units."""
     if effect.cause == "excess-noise":
         return np.zeros((session.schedule.rows * session.unit.size, 1))
     if effect.cause in DISCRETE or effect.cause == "saturation":

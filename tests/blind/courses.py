@@ -172,8 +172,8 @@ class Life:
 
 
 def draw_life(block: Block, kind: str, each: float, rng: np.random.Generator, *, earlier: int = 3) -> Life:
-    """So many ``earlier`` sessions of a warm unit, one a month, then one that is sound, one with a ``COLD`` start that
-    moves every sensor, each by about so many standard errors, or one in which sensors have changed for good.
+    """``earlier`` sessions of a warm unit, one a month, then one that is sound, one with a ``COLD`` start that moves
+    every sensor, each by about ``each`` standard errors, or one in which sensors have changed for good.
     """
     world, up, time = _world(block, rng)
     m, tau = world.unit.size, float(np.ptp(time) * rng.uniform(0.3, 0.8))

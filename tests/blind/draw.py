@@ -1,4 +1,4 @@
-"""Everything of a session that is drawn at random but the effect: unit, stand, site, noise."""
+"""Draws all of a session at random but the effect: unit, stand, site, noise."""
 
 from dataclasses import dataclass, replace
 

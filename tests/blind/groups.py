@@ -189,7 +189,7 @@ def _like(unit: Unit, number: int, rng: np.random.Generator) -> Unit:
 def draw_truths(
     level: str, kind: str, form: str, worlds: list[Session], rng: np.random.Generator, quiet: bool
 ) -> tuple[GroupTruth, ...]:
-    """None, one or two effects."""
+    """Draws none, one or two effects."""
     count = {"none": 0, "two": 2}.get(kind, 1)
     found: list[GroupTruth] = []
     for _ in range(count):

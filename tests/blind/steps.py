@@ -151,14 +151,14 @@ def _left(block: Block, world: Session, up: Array, columns: Array) -> Array:
 
 
 def _strength_alone(world: Session, sensor: int, steps: Array) -> Array:
-    """(S,) the same with nothing absorbed but a constant."""
+    """(S,) strength of steps with nothing absorbed but a constant."""
     share = steps.mean(axis=0)
     error = np.hypot(world.noise.reading, world.noise.repeatability)[sensor]
     return np.asarray(np.sqrt(np.maximum(len(steps) * share * (1 - share), 1e-9)) / error)
 
 
 def _absorbed(world: Session, up: Array) -> Array:
-    """(R·m, 5m + 2R) of parameters and of each row's own direction, standard errors."""
+    """(R·m, 5m + 2R) columns absorbed by the parameters and by each row's own direction, standard errors."""
     unit, g = world.unit, gravity(world.site)
     a = g * up @ unit.axis.T
     R, m = a.shape

@@ -12,7 +12,7 @@ from tests.estimator.calibration.cases import CASES
 
 @dataclass(frozen=True, eq=False)
 class Worked:
-    """Something worked out of a session."""
+    """A result of a session."""
 
     session: CalibrationSession
 

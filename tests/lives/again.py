@@ -1,4 +1,4 @@
-"""The same records once more: uploaded in order of their dates to a fresh service, and restored from a backup."""
+"""Repeats the records: uploaded in order of their dates to a fresh service, and restored from a backup."""
 
 import re
 from collections.abc import Iterator

@@ -42,7 +42,7 @@ NAMED = {
 
 
 def log_is_clean(world: World) -> None:
-    """Nothing failed beside the requests."""
+    """Asserts that nothing failed beside the requests."""
     printed = world.new_log()
     if FAILED.search(printed):
         raise FindError(f"the service's log:\n{printed[-3000:]}")

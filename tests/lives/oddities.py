@@ -24,7 +24,7 @@ def _without_columns(ends: Callable[[str], bool]) -> Change:
 
 
 def _in_zone(hours: float) -> Change:
-    """The same moment, as a clock of another place writes it."""
+    """Writes the moment as a clock of another place does."""
 
     def change(document: Document) -> None:
         if "started_at" in document:

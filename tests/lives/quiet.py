@@ -17,7 +17,7 @@ FLAG = re.compile(r"\bFlag \d+")
 
 
 def pending(world: World) -> frozenset[str]:
-    """Everything that says that it is still being made."""
+    """The names of all that is still being made."""
     world.forget()
     found = set[str]()
     for session in world.sessions("accepted"):

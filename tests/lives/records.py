@@ -48,7 +48,7 @@ class Records(Steps):
 
     @rule(which=WHICH, number=NUMBERS, kind=st.sampled_from(KINDS), zone=st.sampled_from(["Z", "+05:30"]))
     def services(self, which: int, number: int, kind: str, zone: str) -> None:
-        """Something was done to a unit, before or after what is on record."""
+        """Records a service to a unit, before or after what is on record."""
         if unit := self.some_unit(which):
             at = day(number).replace("Z", zone)
             new = {"kind": kind, "at": at, "by": "R. Lind", "note": "shock"}

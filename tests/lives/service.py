@@ -61,7 +61,7 @@ class Service:
 
     @property
     def environment(self) -> dict[str, str]:
-        """Its settings beside those."""
+        """Environment variables of the service: `QUIET` and its webhook hosts."""
         return QUIET | {"IMU_HEALTH_WEBHOOK_HOSTS": ",".join(self.hooks)}
 
     @property

@@ -44,7 +44,7 @@ OPPOSITE = {"pass", "fail"}
 
 
 def twin_of(document: Document) -> Document:
-    """The same file of the other half, and a last digit of its own: readings that are stored twice are questioned."""
+    """The file for the other half, with a last digit of its own: readings that are stored twice are questioned."""
     name = document["sensors"][0]["name"]
     cells = document["table"][name]
     made = {**document, "unit": document["unit"] + TWIN}

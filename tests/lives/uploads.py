@@ -49,7 +49,7 @@ class Uploads(Steps):
 
     @rule(serial=st.sampled_from(BENCHES), number=NUMBERS, kind=st.sampled_from(list(WRITERS)))
     def sends_again(self, serial: str, number: int, kind: str) -> None:
-        """The same content in two formats is one session."""
+        """Sends the same content in two formats, which must become one session."""
         document = self.measured(serial, number)
         first = self.upload(written(document, "json"), "first.json")
         again = self.upload(written(document, kind), f"again.{kind}")

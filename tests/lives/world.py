@@ -26,7 +26,7 @@ PENDING = "still running"
 
 
 class FindError(BaseException):
-    """Something that must never be seen of the service.
+    """Raised for what must never be seen of the service.
 
     No `Exception`: Hypothesis would live the whole life again to say it better.
     """

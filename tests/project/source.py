@@ -26,7 +26,7 @@ class Module:
 
     @cached_property
     def texts(self) -> tuple[str, ...]:
-        """Its strings that are no docstrings."""
+        """The module's strings that are no docstrings."""
         nodes = tuple(ast.walk(self.tree))
         bare = {id(node.value) for node in nodes if isinstance(node, ast.Expr)}
         plain = (node.value for node in nodes if isinstance(node, ast.Constant) and id(node) not in bare)

@@ -1,4 +1,4 @@
-"""Everything that is derived of a unit's records, as one value that can be compared."""
+"""All that is derived of a unit's records, as one value that can be compared."""
 
 from datetime import UTC, datetime
 from typing import Any

@@ -30,7 +30,7 @@ def own_document(**changes: Any) -> Document:
 
 
 def rows_of(document: Document) -> list[list[Any]]:
-    """Its rows in mV, with Russian words for the runs."""
+    """The document's rows in mV, with Russian words for the runs."""
     table = document["table"]
     readings = ([round(1000 * cell, 4) for cell in table[name]] for name in ("A1", "A2", "A3"))
     columns = ([RUNS[run] for run in table["run"]], table["beta_deg"], table["temperature_c"], *readings)

@@ -48,7 +48,7 @@ PATHS = (
     "/units/nobody",
 )
 LONG_AND_ALIKE = "/api-reference"
-"""Its folds stay closed: axe takes a minute for hundreds that are made by one loop."""
+"""A page whose folds stay closed: axe takes a minute for hundreds that are made by one loop."""
 MORE = (
     "/?q=BA&condition=fail",
     "/units/GB-004",
@@ -101,7 +101,7 @@ class Seen:
 
 
 IN_RUSSIAN = ("/", "/units/BA-017", "/sessions/{unfit}", "/sessions/{swayed}/diagnosis", "/flags", "/upload", "/help")
-"""Its words are longer."""
+"""Pages that are checked in Russian, whose words are longer."""
 OVERFLOW = "document.documentElement.scrollWidth - window.innerWidth"
 LEVELS = "[...document.querySelectorAll('h1,h2,h3')].map((h) => +h.tagName[1])"
 CONTROLS = "[...document.querySelectorAll('input:not([type=hidden]),select')]"

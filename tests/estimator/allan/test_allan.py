@@ -48,7 +48,7 @@ def test_the_variance_is_the_one_of_its_definition() -> None:
 
 @pytest.mark.parametrize(("term", "factor", "share"), [(1, 1, 2 / 3), (1, 64, 1.5 / 64), (3, 64, 1 / 64)])
 def test_the_degrees_of_freedom_are_those_of_the_literature(term: int, factor: int, share: float) -> None:
-    """For a long record: NIST SP 1065, table 5, white and random walk frequency noise, per sample."""
+    """NIST SP 1065, table 5, for a long record: white and random walk frequency noise, per sample."""
     n = 65_536
     seen = variances([np.random.default_rng(1).standard_normal((n, 1))], 1.0)
     assert seen is not None

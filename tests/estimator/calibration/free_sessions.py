@@ -84,7 +84,7 @@ def session(true, directions, *, noise=1e-4, stated=True, rng=None, gyros=0, **c
 
 
 def with_gyros(measured, gyros, rng, bias=1e-3, noise=1e-6):
-    """The same session with resting gyros of a known bias after the accelerometers."""
+    """The session with resting gyros of a known bias after the accelerometers."""
     if not gyros:
         return measured
     R = len(measured.readings)

@@ -27,7 +27,7 @@ class World:
     truth: SensorParameters
 
     def vectors(self, happened: Happened | None = None) -> Array:
-        """(R, m, 3) what is applied, block axes, m/s² or rad/s."""
+        """(R, m, 3) applied vectors, block axes, m/s² or rad/s."""
         found = {k: applied(self.session, k, happened or Happened({})) for k in {s.kind for s in self.session.sensors}}
         return np.stack([found[s.kind] for s in self.session.sensors], axis=1)
 

@@ -100,13 +100,13 @@ def scaled(*sigmas: float) -> tuple[Calibration, Calibration]:
 
 
 def test_a_sensor_that_explains_the_change_nearly_as_well_is_left_out_too() -> None:
-    """Without A1 χ² is 13.2, without A2 in its place 21.9: less than 2·ln 100 more."""
+    """χ² is 13.2 without A1 and 21.9 without A2 in its place: less than 2·ln 100 more."""
     found = common_motion(*scaled(5.4, 4.2, 0, 0, 0))[1].motion
     assert found.left_out == ("A1", "A2")
 
 
 def test_a_sensor_that_explains_the_change_far_worse_is_kept() -> None:
-    """Without A1 χ² is 12, without A2 in its place 31."""
+    """χ² is 12 without A1 and 31 without A2 in its place."""
     assert common_motion(*scaled(6.4, 4.0, 0, 0, 0))[1].motion.left_out == ("A1",)
 
 
@@ -278,7 +278,7 @@ def test_the_shares_of_both_sessions_add_up_to_the_uncertainty() -> None:
 
 
 def test_a_frame_held_by_the_axes_themselves_shows_no_turn() -> None:
-    """Such a frame lets the calibration's covariance vanish along a common turn."""
+    """The calibration's covariance vanishes along a common turn in such a frame."""
     axes, still = axes_of(6), np.zeros((6, 5))
     free = covariance_of(6, common=0.0)
     rows = [5 * i + k for i in range(6) for k in (3, 4)]

@@ -83,7 +83,7 @@ def test_a_sensor_that_follows_nothing_is_left_as_it_is() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("scatter", [0.0, 0.15], ids=["noise", "hysteresis"])
 def test_u_covers_what_the_law_leaves(scatter: float) -> None:
-    """In 200 sensors, with a bend too small to be seen in most."""
+    """U is tried in 200 sensors, with a bend too small to be seen in most."""
     covered = []
     for seed in range(200):
         rng = np.random.default_rng((5, seed))

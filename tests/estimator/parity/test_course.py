@@ -31,7 +31,7 @@ def failed(change: Array | float, m: int = 6, sensor: int = 2, first: int = ONSE
 
 
 def later(m: int = 6, sensor: int = 2) -> Array:
-    """Its readings from the onset on."""
+    """Readings of the sensor from the onset on."""
     return flight(m).readings[ONSET:, sensor]
 
 

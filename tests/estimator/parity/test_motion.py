@@ -69,7 +69,7 @@ def test_stated_places_show_smaller_changes() -> None:
 
 
 def test_rest_keeps_its_power() -> None:
-    """Nothing moves there, so nothing is lost: less than a hundredth of the variance, half of that in sigma."""
+    """Rest holds no motion, so nothing is lost: less than a hundredth of the variance, half of that in sigma."""
     found = flown(3, rest=True, seconds=200.0)
     assert found.left_out["moving"] > 50
     assert found.motion_share < 0.01
@@ -92,7 +92,7 @@ def stream(**changes: Any) -> tuple[ParityAccumulator, Any]:
 
 
 def test_the_delays_are_found() -> None:
-    """In samples; delays common to all of them, along each axis of the block, are motion."""
+    """Delays are in samples; those common to all sensors, along each axis of the block, are motion."""
     taken, block = stream(arm=0.0)
     chosen = select(taken.ledger, "any", G, RATE)
     unknown = nuisance_of(chosen.blocks, chosen.rest, taken.reference, G, RATE, arms=False)

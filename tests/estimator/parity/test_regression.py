@@ -42,7 +42,7 @@ def test_a_direction_counts_from_a_fiftieth_of_g_on() -> None:
 
 
 def test_a_direction_that_changes_in_one_group_only_does_not_count() -> None:
-    """Its residuals would say nothing of the noise."""
+    """The residuals of such a direction would not show the noise."""
     swing = np.zeros((320, 3))
     swing[:10, 0] = np.tile([1.0, -1.0], 5)
     assert directions(swing).shape == (4, 1)

@@ -176,8 +176,8 @@ def test_where_the_temperature_only_rises_there_is_no_loop_to_find() -> None:
 
 
 def test_by_chance_a_form_shows_as_often_as_is_said() -> None:
-    """In 16 sound sessions the chance of a loop is even, below a half in about half of them; that of the best lag is an
-    upper bound.
+    """The p-value of a loop is uniform over 16 sound sessions, below a half in about half of them; that of the best lag
+    is an upper bound.
     """
     chances, singles, lags = [], [], []
     for seed in range(16):

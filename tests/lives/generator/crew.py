@@ -39,7 +39,7 @@ class Entry:
 
 
 def entries(life: Life, rng: Random) -> tuple[Entry, ...]:
-    """Everything in the order in which it is entered; in the end all that was wrong is put right."""
+    """All entries of a life in the order in which they are made; in the end every mistake is put right."""
     block, made = draw_block(life, rng), list[Entry]()
     for key, one in enumerate(life.sessions):
         slip = str(rng.choice(list(SLIPS), p=list(SLIPS.values())))

@@ -57,7 +57,7 @@ def session(storage: Storage, unit: str, month: int) -> str:
 
 
 def diagnosed(storage: Storage, unit: str, month: int, evidence: FlagEvidence) -> None:
-    """As a diagnosis of the session would."""
+    """Stores evidence as a diagnosis of the session would."""
     id = session(storage, unit, month)
     made = StoredDiagnosis(id, 0, DiagnosisState.NAMED, "", None, None, None, "1", NOW)
     with storage.database.writing() as store:

@@ -144,7 +144,7 @@ def mcap(found: list[Imu], **changes: bool) -> bytes:
 
 
 def bag(found: list[Imu], **changes: bool) -> bytes:
-    """The same in SQLite: the database of a rosbag2."""
+    """The messages in SQLite: the database of a rosbag2."""
     with TemporaryDirectory() as folder:
         with BagWriter(Path(folder) / "bag", version=9) as writer:
             connections = {}

@@ -74,7 +74,7 @@ class Said:
 
 
 def said(client: httpx.Client) -> Said:
-    """Everything of the one unit."""
+    """All statements about the one unit's due date."""
     outlook = client.get(f"{UNIT}/outlook").raise_for_status().json()
     page = client.get("/units/BA-017", headers={"Accept": "text/html"}).raise_for_status().text
     label = text_of(client.get(f"{UNIT}/label.pdf").raise_for_status().content)
@@ -122,7 +122,7 @@ def test_the_rule_is_said_everywhere_with_its_date(client: httpx.Client, storage
 
 
 def test_the_day_in_the_sentence_sets_the_due_date(client: httpx.Client, storage: Storage) -> None:
-    """For a risk it is the day on which it reaches its level; for an interval the day that it is counted from."""
+    """The day on which a risk reaches its level, or the day that an interval is counted from."""
     measure(storage, DRIFTS)
     found = said(client)
     assert found.due is not None

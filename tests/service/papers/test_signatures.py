@@ -29,7 +29,7 @@ from tests.stock import stores
 ID = session_id(FAILED[-1])
 OWN = f"/api/v1/sessions/{ID}"
 both = pytest.mark.parametrize("databases", ENGINES, indirect=True)
-"""Both engines, for behaviour that statements to a database decide."""
+"""Runs on both engines, for behaviour that statements to a database decide."""
 
 
 def issued(settings: Settings) -> None:

@@ -48,7 +48,7 @@ def certificate(client: httpx.Client, id: str = ID) -> bytes:
 
 
 def raw(client: httpx.Client, id: str) -> RawFile:
-    """Its session's file."""
+    """The file of a certificate's session."""
     return RawFile("session.json", client.get(f"/api/v1/sessions/{id}/file").content)
 
 
@@ -126,7 +126,7 @@ def test_a_difference_says_what_is_printed_and_what_is_computed(printed: bytes) 
 
 
 def once(step: Callable[..., Any]) -> Callable[..., Any]:
-    """Its first answer for every call: no change touches what it rests on, and many would take long."""
+    """Answers every call with the step's first result: no change touches what it rests on, and many would take long."""
     made = list[Any]()
 
     def answered(*given: Any, **named: Any) -> Any:
@@ -163,7 +163,7 @@ def test_each_file_is_calibrated_and_the_session_judged_once(
 
 
 def counted(step: Callable[..., Any], called: list[str]) -> Callable[..., Any]:
-    """The same, with its name noted at every call."""
+    """The step, with its name noted at every call."""
 
     def answered(*given: Any, **named: Any) -> Any:
         called.append(step.__name__)

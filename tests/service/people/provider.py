@@ -88,7 +88,7 @@ class OpenId:
 
 
 class Handler(BaseHTTPRequestHandler):
-    """Its addresses."""
+    """Addresses of the provider."""
 
     openid: OpenId
 

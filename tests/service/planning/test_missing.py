@@ -9,7 +9,7 @@ ADDRESS = "/api/v1/plan/missing"
 
 
 def so_far(document: Document, count: int) -> Document:
-    """Its first rows."""
+    """The document with its first rows alone."""
     return document | {"table": {name: column[:count] for name, column in document["table"].items()}}
 
 

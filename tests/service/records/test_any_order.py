@@ -76,8 +76,9 @@ class Crew:
         record_service(self.storage, UNITS[0], SERVICE, NOW)
 
     def mends(self) -> None:
-        """Everything that was taken back is accepted again, and one reference before the service is the one that all
-        agree on."""
+        """Accepts again everything that was taken back, and chooses one reference before the service that all agree
+        on.
+        """
         with self.storage.database.reading() as store:
             gone = [s.id for s in Sessions(store).of_unit(UNITS[0]) if s.state is RecordState.WITHDRAWN]
         for id in gone:

@@ -47,7 +47,7 @@ def way(storage: Storage) -> Deriving:
 
 
 def state(storage: Storage) -> tuple[Any, ...]:
-    """Everything that a preview must leave alone."""
+    """The records that a preview must leave alone."""
     with storage.database.reading() as store:
         unit = Units(store).key("BA-017")
         sessions = Sessions(store).of_unit("BA-017")

@@ -18,7 +18,7 @@ MOVED = session_bytes(seed=2, month=2, a3_moved=90.0)
 
 
 def in_another_unit(content: bytes) -> bytes:
-    """The same session with readings in mV for V, so that it is questioned."""
+    """The session with readings in mV for V, so that it is questioned."""
     document = json.loads(content)
     names = [name for name in document["table"] if name.startswith("A")]
     document["table"] |= {name: [1e3 * x for x in document["table"][name]] for name in names}
@@ -45,7 +45,7 @@ def sent(client: httpx.Client, content: bytes, **params: str) -> str:
 
 
 def done(client: httpx.Client, id: str, what: str, **more: Any) -> None:
-    """Something that an engineer does to a session."""
+    """Does to a session what an engineer may do."""
     client.post(f"/api/v1/sessions/{id}/{what}", json=BY | more).raise_for_status()
 
 

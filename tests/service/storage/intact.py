@@ -20,7 +20,7 @@ WHOLE: dict[Any, int] = {CalibrationRow: 1, ParameterRow: 4 * SENSORS, DecisionR
 
 
 def faults(settings: Settings, acknowledged: Collection[bytes], sent: Collection[bytes]) -> list[str]:
-    """Everything that is not as it must be after an interruption; none is what is wanted.
+    """Faults in the stored data after an interruption; none is wanted.
 
     ``acknowledged`` are uploads whose answer was seen, ``sent`` all that were ever sent.
     """

@@ -62,7 +62,7 @@ def full(settings_filled: SettingsFilled) -> Settings:
 
 
 across = pytest.mark.parametrize(("databases", "other"), [ENGINES, ENGINES[::-1]], indirect=True)
-"""From either engine into the other."""
+"""Runs from either engine into the other."""
 
 
 @pytest.fixture

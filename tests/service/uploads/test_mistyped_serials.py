@@ -51,7 +51,7 @@ def members(client: httpx.Client, level: str, name: str) -> int:
 
 
 def renamed(content: bytes, **changes: Any) -> bytes:
-    """The same readings with other words beside them."""
+    """The session with the same readings and other words beside them."""
     return json.dumps(json.loads(content) | changes).encode()
 
 
