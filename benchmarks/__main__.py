@@ -41,7 +41,7 @@ def main() -> int:
 
 
 def measured(key: str, results: Results, console: Console) -> str:
-    """How one benchmark ended."""
+    """Runs one benchmark, prints its rows and returns how it ended."""
     console.rule(f"{key}: benchmarks/{BENCHMARKS[key]}.py")
     began, end, seen = time.monotonic(), "interrupted", set[str]()
     with tempfile.NamedTemporaryFile("r", prefix="imu-bench-", encoding="utf-8") as rows:

@@ -28,7 +28,7 @@ LSB = {GYROSCOPE: np.radians(0.05), ACCELEROMETER: 0.00333 * 9.80665}
 
 @dataclass(frozen=True)
 class World:
-    """What is true of records of one kind."""
+    """The truth of records of one kind."""
 
     seconds: int
     rests: int
@@ -49,12 +49,12 @@ WORLDS = (
 
 
 def sensor(name: str, kind: str = ACCELEROMETER) -> Sensor:
-    """One that reads SI."""
+    """A sensor that reads SI."""
     return Sensor(name, kind, np.array([1.0, 0.0, 0.0]), 1.0, "SI")
 
 
 def records(world: World, count: int, seed: int) -> list[SensorNoise]:
-    """What so many records say, one after another: each with its own rests."""
+    """The noise found in so many records, one after another, each with its own rests."""
     rng = np.random.default_rng(seed)
     found: list[Any] = []
     for _ in range(count):

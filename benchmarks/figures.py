@@ -1,4 +1,4 @@
-"""What a benchmark returns, and how it is timed."""
+"""Results of a benchmark, and its timing."""
 
 import os
 import resource
@@ -19,7 +19,7 @@ COMPILING = {name: value for name, value in os.environ.items() if name != "PYTHO
 
 
 def shown(value: float, unit: str) -> str:
-    """With its unit; seconds below one as milliseconds."""
+    """The value with its unit; seconds below one as milliseconds."""
     if unit == "s" and value < 1:
         return f"{1e3 * value:.3g} ms"
     return f"{value:.3g} {unit}".rstrip()
@@ -55,9 +55,9 @@ class Felt:
     value: float
     """s, or in ``unit``."""
     most: float | None
-    """In ``unit``; None where nothing is aimed at."""
+    """Largest value aimed at, in ``unit``; None where there is no target."""
     unit: str = "m"
-    """Of the target."""
+    """Unit of the target."""
     m: float = field(default_factory=importing)
     """s, of the same moment and by the same clock: `importing` with `children` beside processor seconds."""
 
@@ -82,19 +82,19 @@ class Figure:
     ours: float
     """s, or in ``unit``."""
     theirs: float
-    """The same of the peer, or what ours may be at most."""
+    """The peer's figure, or the most that ours may be; same unit."""
     target: str
     """The least ratio: a number or a fraction, words before it; — where nothing is aimed at."""
     unit: str = "s"
 
     @property
     def ratio(self) -> float:
-        """How many times faster, or smaller, than the peer."""
+        """The peer's figure over ours: how many times faster, or smaller, ours is."""
         return self.theirs / self.ours
 
     @property
     def reached(self) -> str:
-        """Whether the ratio is what was aimed at."""
+        """Whether the ratio reaches its target, in words."""
         if self.target == "—":
             return "—"
         return "yes" if self.ratio >= Fraction(self.target.split()[-1]) else "no"

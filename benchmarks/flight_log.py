@@ -23,14 +23,14 @@ from benchmarks.u2_uploads import serving
 UNIT = "vehicle-171"
 LOG = "ardupilot-three-imus/log171.bin"
 HEAD, FORMAT, FORMAT_LENGTH = b"\xa3\x95", 128, 89
-"""Of a DataFlash message; the type of the messages that describe the others, and their bytes."""
+"""DataFlash: header of a message, type of the messages that describe the others, and their length in bytes."""
 LETTERS = {"I": "I", "f": "f", "B": "B", "M": "B", "Q": "Q"}
-"""Of DataFlash's formats → of `struct`, as far as messages of IMUs use them."""
+"""Letters of DataFlash's formats → letters of `struct`, as far as messages of IMUs use them."""
 IMUS = ("IMU", "IMU2", "IMU3")
 REST, RATE = (22.0, 50.0), 49.1
 """s from the log's first reading, between the hands that set it down and its take-off, and Hz of its readings."""
 DIRECTIONS, NOISE, GRAVITY = 20, 0.01, 9.80665
-"""Of the reference; m/s², one sigma of a reading; m/s²."""
+"""The reference: directions; one sigma of a reading, m/s²; gravity, m/s²."""
 
 
 def messages(content: bytes) -> Iterator[tuple[str, tuple[float, ...]]]:
@@ -77,7 +77,7 @@ def documents() -> Iterator[dict[str, Any]]:
 
 
 def main() -> None:
-    """What the service says of both."""
+    """Prints the service's verdicts on both."""
     with (
         tempfile.TemporaryDirectory(prefix="imu-flight-", ignore_cleanup_errors=True) as name,
         serving(name) as port,

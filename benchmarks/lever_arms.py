@@ -17,7 +17,7 @@ RATES, ARMS = (2.0, 6.0, 20.0), (0.05, 0.1, 0.3)
 SESSIONS = 1500
 """Sound ones."""
 SEED = 77
-"""Of their rates and leans."""
+"""Seed of the rates and leans."""
 STOPS = ((0.0, 180.0), (0.0, 180.0, 0.0), (0.0, 90.0, 180.0, 270.0))
 """degrees."""
 

@@ -113,7 +113,7 @@ def by_descent(session: CalibrationSession) -> tuple[SensorParameters, int]:
 
 
 def by_levenberg_marquardt(session: CalibrationSession) -> tuple[SensorParameters, int]:
-    """The same functional."""
+    """The published functional, minimised by Levenberg–Marquardt."""
     found = levenberg_marquardt(triples_of(session))
     return found.parameters, found.iterations
 

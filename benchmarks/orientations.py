@@ -56,7 +56,7 @@ def case(m: int, directions: Array, rng: np.random.Generator, size: float = 0.01
 
 
 def one_degree_off(found: Case, rng: np.random.Generator) -> Case:
-    """The same block set down a degree beside each orientation."""
+    """The case with the block set down a degree beside each orientation."""
     assert found.schedule.directions is not None
     off = unit(found.schedule.directions + np.radians(1.0) * rng.standard_normal(found.schedule.directions.shape))
     return Case(found.truth, replace(found.schedule, directions=off))

@@ -18,7 +18,7 @@ ROUNDS = 20
 COMMAND = str(Path(sys.executable).with_name("imu-health"))
 NEEDED = "import numpy, scipy.special, typer, rich.progress, rich.table; from pydantic import TypeAdapter"
 LIBRARIES = (sys.executable, "-c", NEEDED)
-"""What a command that calibrates and prints a table cannot do without; Typer reads arguments by pydantic."""
+"""The least that a command needs which calibrates and prints a table; Typer reads arguments by pydantic."""
 NOTE = """
 P10 misses its second target by its libraries. The peer imports numpy and of scipy only the name. A calibration needs
 scipy's special functions, for probabilities and coverage factors, a third of the time: their import loads all of numpy

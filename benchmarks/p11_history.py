@@ -38,7 +38,7 @@ CHANGED = {
     "content_digest": "md5({0} || '/' || n)", "started_at": "{0} + n * interval '1 hour'",
     "at": "{0} + n * interval '1 hour'", "is_reference": "false",
 }  # fmt: skip
-"""What a column of a copy holds instead of its original's."""
+"""Expressions for the columns of a copy that differ from the original."""
 NOTE = """
 P11 reaches its target: what grows with a history is reading the unit's own sessions in short, one row each, and
 counting them by stand.
@@ -46,7 +46,7 @@ counting them by stand.
 
 
 def run() -> Iterator[Figure]:
-    """Both uploads, in turn."""
+    """Measures both uploads, in turn."""
     with postgres_databases() as databases, tempfile.TemporaryDirectory(prefix="imu-p11-") as folder:
         storage = Storage(open_database(databases.migrated()), Files(Path(folder)))
         server = int((databases.server.pgdata / "postmaster.pid").read_text().split()[0])

@@ -68,7 +68,7 @@ def sensor_by_sensor(session: CalibrationSession, geometry: Geometry, start: Sen
 
 
 def one_session(p: SensorParameters) -> SensorParameters:
-    """The same as those of one session of several: (1, m)."""
+    """The parameters as those of one session of several: (1, m)."""
     return SensorParameters(p.scale[None], p.bias[None], p.quadratic[None], p.axis[None])
 
 
@@ -149,8 +149,8 @@ def floor(session: CalibrationSession, geometry: Geometry, start: SensorParamete
 
 
 def run() -> list[Figure]:
-    """From the nominal values, which is what a session gives: the peers as they come, and the quick one's fastest
-    method.
+    """Times all from the nominal values, which is what a session gives: the peers as they come, and the quick one's
+    fastest method.
 
     And, beyond what a user has, that method from our own closed form, whose time it is not charged.
     """

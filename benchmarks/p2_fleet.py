@@ -17,7 +17,7 @@ from estimator.parameters import nominal
 
 SESSIONS = 10_000
 FEW = 500
-"""Of the loop, which takes as long for each however many there are."""
+"""Sessions of the loop, which takes as long for each however many there are."""
 NOTE = """
 P2 reaches its target against the solves, and misses that against the loop: read one by one, the results take more
 than half of the time, and in the loop no longer.
@@ -25,7 +25,7 @@ than half of the time, and in the loop no longer.
 
 
 def run() -> list[Figure]:
-    """Both peers."""
+    """Measures against both peers."""
     fleet = sessions(SESSIONS)
     geometry = stand_geometry(fleet[0])
     J = jacobian(nominal(fleet[0].sensors), geometry.n, geometry.norm)

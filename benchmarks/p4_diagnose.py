@@ -98,7 +98,7 @@ def one_by_one(session: CalibrationSession) -> str:
 
 
 def run() -> list[Figure]:
-    """Both must name the hidden cause."""
+    """Times ours and the peer on a hidden cause, which both must name."""
     session = hidden()
     named = diagnose(session).findings[0].cause, one_by_one(session)
     if named != ("bias-ramp", "bias-ramp"):
@@ -107,7 +107,7 @@ def run() -> list[Figure]:
     history, numbers = sessions(11)[1:], count()
 
     def anew() -> object:
-        """With sessions that nobody has read, of the same readings."""
+        """Diagnoses with a history that has not been read before, of the same readings."""
         return diagnose(session, [replace(h, notes=f"read {next(numbers)}") for h in history])
 
     known = side_by_side(partial(diagnose, session, history), partial(diagnose, session), rounds=15)

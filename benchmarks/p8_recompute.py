@@ -45,12 +45,12 @@ transaction of its own, so that the time of a session does not grow with their n
 
 @dataclass(frozen=True)
 class Rate:
-    """How so many processes got on."""
+    """Rate of recomputation with so many processes."""
 
     workers: int
     sessions: int
     seconds: float
-    """By the clock, without the start of the processes."""
+    """Seconds by the clock, without the start of the processes."""
     processor: float
     """Seconds of the processor, the database's among them."""
 
@@ -102,7 +102,7 @@ def accept(storage: Storage) -> None:
 
 
 def rate(storage: Storage, settings: Settings, server: int, workers: int, units: int | None) -> Rate:
-    """So many processes at the next units, or at all that are left."""
+    """The rate of so many processes at the next units, or at all that are left."""
     with by_workers(storage, settings, lambda: NOW, workers=workers) as run:
         began, spent = time.monotonic(), processor(server)
         done = [one.done for one in run(islice(units_behind(storage), units))]

@@ -27,7 +27,7 @@ SITE = Site(gravity=GRAVITY)
 
 
 def visible() -> Table:
-    """What parity can see of each sensor, by block."""
+    """Share of each sensor's change that parity sees, by block."""
     blocks = [("4, one up and three about it", axes_of(4)), ("5, likewise", axes_of(5)), ("6, likewise", axes_of(6))]
     blocks.append(("6 on a cone of 54.7°", cone(6, np.arccos(1 / np.sqrt(3)))))
     blocks.append(("24, eight triads", np.tile(np.eye(3), (8, 1))))
@@ -82,7 +82,7 @@ def false_alarms() -> Table:
 
 
 def limits_of(found: ParityResult) -> Array:
-    """(3,) median over the sensors of what would have been detected: µg, ppm, arcsec."""
+    """(3,) median over the sensors of the detectable size: µg, ppm, arcsec."""
 
     def typical(name: str) -> float:
         seen = [getattr(s, name).detectable for s in found.sensors]
@@ -154,7 +154,7 @@ def hours() -> Table:
 
 
 def peak() -> float:
-    """Of this process, MB."""
+    """Peak memory of this process, MB."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
 
 

@@ -38,7 +38,7 @@ class Half:
 
 
 def accelerometers(session: CalibrationSession) -> CalibrationSession:
-    """Without the gyros, whose scale rest does not show."""
+    """The session without the gyros, whose scale rest does not show."""
     own = [k for k, s in enumerate(session.sensors) if s.kind == ACCELEROMETER]
     return replace(
         session,

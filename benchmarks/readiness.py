@@ -1,4 +1,4 @@
-"""How often `estimator.readiness` is wrong: `python -m benchmarks.readiness` prints the tables of its page.
+"""Error rates of `estimator.readiness`: `python -m benchmarks.readiness` prints the tables of its page.
 
 Courses are made here, of nothing that the estimator knows: settling by one and by two time constants, heat that
 diffuses into a slab, a steady drift, a swing, a random walk, flicker noise of many relaxations. Sizes are drawn evenly
@@ -26,7 +26,7 @@ DURATION = 96 * 60.0
 TOLERANCE = 50.0
 """µg."""
 MINUTES = (10, 20, 40, 80)
-"""Of record."""
+"""Lengths of record, minutes."""
 G = 9.80665
 
 Draw = Callable[[Array, np.random.Generator], Array]
@@ -37,7 +37,7 @@ def _size(rng: np.random.Generator) -> float:
 
 
 def still(t: Array, rng: np.random.Generator) -> Array:
-    """Nothing but white noise."""
+    """A course of zero: white noise alone."""
     return np.zeros_like(t)
 
 
@@ -101,7 +101,7 @@ COURSES: dict[str, Draw] = {
 
 
 def case(draw: Draw, minutes: int, rng: np.random.Generator) -> tuple[ReadinessState, bool]:
-    """What is said, and whether the drift to come exceeds what is allowed."""
+    """The answer to one case, and whether the drift to come exceeds what is allowed."""
     count = int(60 * minutes / PERIOD)
     t = PERIOD * np.arange(count + int(DURATION / PERIOD) + 1) + rng.uniform(0, 3600)
     course = np.stack([draw(t, rng) for _ in range(SENSORS)], axis=1)

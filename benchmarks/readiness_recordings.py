@@ -1,4 +1,4 @@
-"""What `estimator.readiness` says of public recordings: `python -m benchmarks.readiness_recordings`.
+"""Answers of `estimator.readiness` to public recordings: `python -m benchmarks.readiness_recordings`.
 
 Units of a factory's grade, so with tolerances of theirs: 10 mg and 1 % for accelerometers, 0.2 °/s for gyros, and a
 programme of ten minutes.

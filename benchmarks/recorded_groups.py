@@ -21,7 +21,7 @@ from estimator.results import Calibration
 from estimator.session import CalibrationSession
 
 TRIADS = 8
-"""On the sensor array's board."""
+"""Number of triads on the sensor array's board."""
 LEVELS = ("unit", "type")
 
 
@@ -49,7 +49,7 @@ def groups() -> Iterator[Recorded]:
 
 
 def dated(session: CalibrationSession, number: int) -> CalibrationSession:
-    """With a date, where its recording states none: a group is told oldest first."""
+    """The session with a date, where its recording states none: a group is ordered by date."""
     return replace(session, started_at=session.started_at or f"2014-01-{number + 1:02d}T00:00:00Z")
 
 

@@ -37,7 +37,7 @@ from estimator.writing import session_document
 TRIADS = 8
 MILLI_G = 9.80665e-3
 RUNS = {"exp_1": 0, "exp_2": 0, "exp_3": 0, "exp_4": 0, "exp_6": 1, "exp_9": 1}
-"""Which switching on a session belongs to, as the packets are numbered."""
+"""Power-on that each session belongs to, by number, from the numbering of the packets."""
 APART = 31
 """Days between the two runs, and from the second to today; made up: no recording states its day."""
 TODAY = datetime.now(UTC).replace(microsecond=0)
@@ -64,7 +64,7 @@ BIAS = 1
 
 @dataclass(frozen=True, eq=False)
 class Course:
-    """What a session shows of a warm-up of one time constant. m sensors."""
+    """A session's evidence on a warm-up of one time constant. m sensors."""
 
     score: Array
     """(m,) U, s²/m."""
@@ -80,7 +80,7 @@ class Course:
 
 @cache
 def array() -> dict[str, CalibrationSession]:
-    """Its sessions by name, oldest first, dated."""
+    """The array's sessions by name, oldest first, dated."""
     return {r.name.removeprefix("kth-mimu-"): dated(r.name, r.session) for r in recordings("kth-mimu")}
 
 
@@ -94,13 +94,13 @@ def dated(name: str, session: CalibrationSession) -> CalibrationSession:
 
 @cache
 def fitted(name: str) -> WhitenedResiduals:
-    """Of the plain calibration."""
+    """Residuals of the plain calibration of a session."""
     return WhitenedResiduals.of(baseline_of(array()[name]))
 
 
 @cache
 def course(name: str, tau: float) -> Course:
-    """Of one session, every sensor warming up with one time constant."""
+    """The course of one session, every sensor warming up with one time constant."""
     white = fitted(name)
     base, m = white.baseline, len(white.baseline.session.sensors)
     columns = np.zeros((*base.residual.shape, m))
@@ -114,7 +114,7 @@ def course(name: str, tau: float) -> Course:
 
 @dataclass(frozen=True, eq=False)
 class Learned:
-    """A unit's zeros as earlier sessions tell them."""
+    """A unit's zeros as learned from earlier sessions."""
 
     tau: float
     """s."""
@@ -127,12 +127,12 @@ class Learned:
 
 
 def learned(names: Sequence[str]) -> Learned:
-    """The time constant that the sessions fit best with, and what belongs to it."""
+    """The time constant that fits the sessions best, with its zeros and amplitudes."""
     return min((learned_at(names, float(tau)) for tau in CONSTANTS), key=lambda one: one.misfit)
 
 
 def learned_at(names: Sequence[str], tau: float) -> Learned:
-    """By one least-squares fit of zeros after settling and amplitudes."""
+    """Zeros and amplitudes at one time constant, by one least-squares fit."""
     runs = sorted({RUNS[name] for name in names})
     m = len(array()[names[0]].sensors)
     normal, right, square = np.zeros((m * (1 + len(runs)),) * 2), np.zeros(m * (1 + len(runs))), 0.0
@@ -152,18 +152,18 @@ def learned_at(names: Sequence[str], tau: float) -> Learned:
 
 
 def predicted(known: Learned, name: str) -> Array:
-    """(m,) m/s², what the plain calibration of another session would find."""
+    """(m,) m/s², predicted zeros of the plain calibration of another session."""
     return known.settled + course(name, known.tau).taken @ known.amplitude[RUNS[name]]
 
 
 def rms(values: Array) -> str:
-    """Of the z axes and of all sensors, mg."""
+    """Root mean square of the z axes and of all sensors, mg."""
     both = (values[2::3], values)
     return " / ".join(f"{np.sqrt(np.mean(x**2)) / MILLI_G:.2f}" for x in both)
 
 
 def predictions() -> Iterator[tuple[str, ...]]:
-    """What earlier sessions predict of the next one's zeros."""
+    """Predictions of the next session's zeros from earlier sessions."""
     for names, following in LEARNED:
         known, zero = learned(names), course(following, CONSTANTS[0]).zero
         last = course(names[-1], CONSTANTS[0]).zero
@@ -172,7 +172,7 @@ def predictions() -> Iterator[tuple[str, ...]]:
 
 
 def judged_sessions(http: httpx.Client) -> Iterator[tuple[str, ...]]:
-    """What the service says of every session as it comes. The first makes the type, whose tolerances are set then."""
+    """The service's verdict on every session as it comes. The first makes the type, whose tolerances are set then."""
     for name, session in array().items():
         receipt = http.post("/sessions", json=session_document(session)).raise_for_status()
         id, unit = receipt.json()["id"], receipt.json()["unit"]
@@ -186,7 +186,7 @@ def judged_sessions(http: httpx.Client) -> Iterator[tuple[str, ...]]:
 
 
 def wanted(outlook: dict[str, Any]) -> str:
-    """What the unit needs next, and in how many days from now."""
+    """The unit's next action, with the days from now."""
     due = outlook["due"]
     days = "" if due is None else f", {(datetime.fromisoformat(due) - datetime.now(UTC)).days} days from today"
     return f"{outlook['action']}{days}"
@@ -199,7 +199,7 @@ def named(found: dict[str, Any]) -> str:
 
 
 def waited_for(http: httpx.Client, address: str) -> dict[str, Any]:
-    """An answer that is being made."""
+    """Waits for an answer that is being made."""
     answer = http.get(address)
     while answer.status_code == httpx.codes.ACCEPTED:
         answer = http.get(address)

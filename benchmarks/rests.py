@@ -33,9 +33,9 @@ WHITE = {ACCELEROMETER: 0.02, GYROSCOPE: 1e-3}
 FLICKER = 0.02
 """Size of the flicker, in white noise of a sample."""
 PARAMETERS = ("scale", "bias", "axis", "gyro bias")
-"""Whose errors the table shows."""
+"""Parameters whose errors the table shows."""
 NORMAL = 1.959964
-"""Of 95 %."""
+"""Standard deviations of a normal interval of 95 %."""
 LOGS = 24
 
 
@@ -50,7 +50,7 @@ class World:
 
     @property
     def name(self) -> str:
-        """As the table names it."""
+        """Name in the table."""
         return f"{self.accelerometers} accelerometers, {self.tilt:g}°"
 
 
@@ -59,7 +59,7 @@ WORLDS = tuple(World(m, tilt) for m in (3, 6, 15) for tilt in (0.0, 0.05, 0.2))
 
 @dataclass(frozen=True, eq=False)
 class Truth:
-    """What one log was made with. m accelerometers."""
+    """The truth of one log. m accelerometers."""
 
     scale: Array
     bias: Array
@@ -137,7 +137,7 @@ def twin(world: World, seed: int) -> tuple[CalibrationSession, Truth]:
 
 
 def errors(result: Calibration, truth: Truth) -> Iterator[tuple[str, float, float, float]]:
-    """Of every parameter: its name, error, stated sigma and factor of 95 %."""
+    """Name, error, stated sigma and factor of 95 % of every parameter."""
     for i, (scale, bias, axis) in enumerate(zip(truth.scale, truth.bias, truth.axes, strict=True)):
         one = result.sensors[i]
         for name, true in (("scale", scale), ("bias", bias)):
@@ -154,13 +154,15 @@ def errors(result: Calibration, truth: Truth) -> Iterator[tuple[str, float, floa
 
 
 def share(held: Array) -> str:
-    """Of intervals (logs, parameters) that hold the truth, in per cent, with the 95 % interval that the logs show."""
+    """Share of intervals (logs, parameters) that hold the truth, in per cent, with the 95 % interval that the logs
+    show.
+    """
     each = 100 * held.mean(axis=1)
     return f"{each.mean():.1f} ± {NORMAL * each.std(ddof=1) / np.sqrt(len(each)):.1f}"
 
 
 def ratio(stated: Array, true: Array) -> str:
-    """Of the rms of stated to true errors, of one shape and unit."""
+    """Ratio of the root mean squares of stated and true errors, of one shape and unit."""
     return f"{np.sqrt(np.mean(stated**2) / np.mean(true**2)):.2f}"
 
 

@@ -15,7 +15,7 @@ BENCHMARKS = {
     "P1": "p1_calibrate", "P2": "p2_fleet", "P3": "p3_orientations", "P4": "p4_diagnose", "P8": "p8_recompute",
     "P10": "p10_startup", "P11": "p11_history", "P12": "p12_files", "soak": "soak", "rivals": "rivals",
 }  # fmt: skip
-"""What a row's id begins with → the file that measures it."""
+"""Beginning of a row's id → the file that measures it."""
 ALSO = {"U3": "U2", "U5": "P8", "U7": "U1", "U10": "U4", "P4h": "P4"}
 """Rows that are measured with another benchmark."""
 FELT = re.compile(r"U\d+")
@@ -61,7 +61,7 @@ class Results:
 
     @classmethod
     def read(cls, file: Path) -> "Results":
-        """What stands in the file; nothing where there is none."""
+        """Reads the rows of the file; none where there is no file."""
         found = cls(file)
         for line in file.read_text("utf-8").splitlines() if file.exists() else []:
             if run := RUN.match(line):
@@ -104,25 +104,25 @@ class Results:
 
 
 def place_of(id: str) -> int:
-    """Of a row in its table; of rows of one place the order stays."""
+    """Sort key of a row in its table; rows of one place keep their order."""
     found = FELT.match(id)
     return int(found[0][1:]) if found else list(BENCHMARKS).index(benchmark_of(f"| {id} | "))
 
 
 def id_of(line: str) -> str:
-    """What a row begins with."""
+    """The id that a row begins with."""
     return line.split(" | ", 1)[0].removeprefix("| ")
 
 
 def benchmark_of(line: str) -> str:
-    """Its key; nothing of a line that is no row."""
+    """Key of a row's benchmark; empty for a line that is no row."""
     key = re.split(r"[, ]", id_of(line))[0]
     known = ALSO.get(key, key)
     return known if known in BENCHMARKS else ""
 
 
 def note_of(key: str) -> str:
-    """What explains the rows of a benchmark: its file's NOTE, read without running the file."""
+    """The explanation of a benchmark's rows: its file's NOTE, read without running the file."""
     source = Path(__file__).with_name(f"{BENCHMARKS[key]}.py").read_text("utf-8")
     for node in ast.parse(source).body:
         if isinstance(node, ast.Assign) and [ast.unparse(target) for target in node.targets] == ["NOTE"]:

@@ -40,7 +40,7 @@ positions tell nothing about a model by themselves: all methods meet them within
 
 
 def run() -> Iterator[Figure]:
-    """Both rivals, time and residual."""
+    """Figures of time and residual beside both rivals."""
     if not folder().is_dir():
         raise FileNotFoundError(f"the recordings are not at {folder()}; set {FOLDER} to their folder")
     yield from against_imucal()
@@ -105,7 +105,7 @@ def halves(position: Array) -> tuple[Array, Array]:
 
 
 def first_halves(table: pd.DataFrame) -> pd.DataFrame:
-    """The same of a table with labels: rests by half, turns whole."""
+    """The first half of a table with labels: rests by half, turns whole."""
     parts = [table.loc[name] for name in dict.fromkeys(table.index)]
     return pd.concat([part[: (len(part) + 1) // 2] if part.index[0] in PARTS else part for part in parts])
 

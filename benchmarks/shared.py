@@ -29,9 +29,9 @@ from tests.blind.steps import OTHERS, RAMPS, WALKS, Block, Stepped, draw_others
 
 PAGE = Path(__file__).parents[1] / "docs" / "diagnosis" / "shared.md"
 STRENGTH = 14.0
-"""Of all sensors together, standard errors."""
+"""Strength of all sensors together, standard errors."""
 EACH = 12.0
-"""Of every sensor, of its independent drift."""
+"""Strength of every sensor's independent drift, standard errors."""
 LEVEL = 0.003
 """Family-wise level of the diagnosis, and that of the oracle's one test."""
 POWER = 0.95
@@ -71,15 +71,15 @@ class Wish:
 
 @dataclass(frozen=True)
 class Answer:
-    """What was said of it."""
+    """The answer to one session."""
 
     wish: Wish
     one: bool
     """Whether one shared course is found, and nothing else."""
     right: bool
-    """Whether it has its own name too."""
+    """Whether it also has the right name."""
     seen: bool
-    """Whether an oracle that knows the course would see others follow it beside the strongest sensor."""
+    """Whether an oracle that knows the course would see other sensors follow it beside the strongest."""
     shared: bool
     sure: bool
     """Whether one shape is claimed for all, without saying that each may have its own."""
@@ -92,7 +92,7 @@ class Answer:
 
 
 def wishes(sessions: int, seed: int) -> Iterator[Wish]:
-    """So many of every kind of session; sound ones four times as many."""
+    """Wishes for ``sessions`` sessions of every kind; for sound ones four times as many."""
     for b, block in enumerate(BLOCKS):
         for c, course in enumerate(COURSES):
             yield from (Wish(SHARED, block, course, STRENGTH, (seed, 1, b, c, k)) for k in range(sessions))
@@ -128,7 +128,8 @@ def oracle(m: int) -> float:
 
 def others_seen(hidden: Driven | Stepped, m: int) -> bool:
     """Whether one χ² test of all m sensors but the strongest, which knows the course but for the sizes, may be expected
-    to find that they follow."""
+    to find that they follow.
+    """
     squares = np.sort(np.square(hidden.strength)) if isinstance(hidden, Driven) and hidden.strength else np.zeros(1)
     return bool(squares[:-1].sum() + m - 1 > chi2.isf(LEVEL, m - 1))
 
@@ -165,7 +166,7 @@ def page(answers: Sequence[Answer], command: str) -> str:
 
 
 def of(answers: Sequence[Answer], kind: str, course: str = "", block: Block | None = None) -> list[Answer]:
-    """Those of one kind, course and block; of all where none is named."""
+    """The answers of one kind, course and block; of all where none is named."""
     return [
         a for a in answers if a.wish.kind == kind and course in ("", a.wish.course) and block in (None, a.wish.block)
     ]

@@ -53,13 +53,13 @@ def run() -> Iterator[Figure]:
 
 
 def soaked_anew(uploads: int) -> list[Look]:
-    """What a service with an empty database takes on the way."""
+    """Memory and descriptors on the way, of a service with an empty database."""
     with sqlite_databases() as databases, tempfile.TemporaryDirectory(prefix="imu-soak-") as folder:
         return soaked(Settings(database_url=databases.migrated(), data_folder=Path(folder)), uploads)
 
 
 def soaked(settings: Settings, uploads: int) -> list[Look]:
-    """What a service of its own takes on the way."""
+    """Memory and descriptors on the way, of a service of its own."""
     service = Service(settings, free_port())
     service.start()
     try:

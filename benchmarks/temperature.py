@@ -63,9 +63,9 @@ class Lived:
     flagged: bool
     """Whether any parameter is said to jump or drift."""
     found: tuple[bool, ...]
-    """Of every law that is worth `SHOWN` and more, whether it is found."""
+    """Whether each law with an effect of `SHOWN` or more is found."""
     claimed: tuple[bool, ...]
-    """The same of parameters that follow nothing."""
+    """Whether a law is found for each parameter that follows nothing."""
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ class Named:
     """Whether it can be told from every rival."""
     first: bool
     told: bool
-    """Named or listed; or what it is without its bend."""
+    """Whether it is named or listed, or named without its bend."""
 
 
 def lived(kind: str, seed: tuple[int, ...]) -> Lived:
@@ -118,7 +118,7 @@ def _file(world: object, law: Array, celsius: float, day: float, rng: np.random.
 
 
 def _worth(law: Array, warm: Array) -> float:
-    """Of a line and a parabola (2,), from end to end of the temperatures (n,) of the sessions."""
+    """Effect of a line and a parabola (2,), over the range of the temperatures (n,) of the sessions."""
     away = warm - ROOM
     return float(np.ptp(law[0] * away + law[1] * away**2))
 
@@ -177,7 +177,7 @@ def is_named(seed: tuple[int, ...]) -> bool:
 
 @dataclass(frozen=True)
 class Answers:
-    """Everything that was measured."""
+    """All results."""
 
     lived: dict[str, list[Lived]]
     carried: dict[str, list[Carried]]
@@ -186,7 +186,7 @@ class Answers:
 
 
 def performed(run: Callable[..., Iterator[object]], units: int, seed: int) -> Answers:
-    """So many of every kind; sound sessions three times as many."""
+    """Runs so many of every kind; sound sessions three times as many."""
 
     def each(work: Callable[..., object], number: int, kinds: Sequence[str]) -> dict[str, list[object]]:
         found = {k: list(run(partial(work, k), seeds(number, i, units))) for i, k in enumerate(kinds)}
@@ -214,7 +214,7 @@ def page(answers: Answers, command: str) -> str:
 
 
 def rows(answers: Answers) -> Iterator[tuple[str, str, object]]:
-    """Of the table."""
+    """Rows of the table."""
     for kind in (LINE, PARABOLA):
         seen = answers.carried[kind]
         head = f"reference at {ROOM:.0f}, session at {WARM:.0f} °C, {kind}"

@@ -45,7 +45,7 @@ TOLERANCES = {
     (ACCELEROMETER, "scale"): 100e-6,
     (ACCELEROMETER, "axis"): 20 * ARCSEC,
 }
-"""Those that hold until an engineer sets others."""
+"""Tolerances that hold until an engineer sets others."""
 ROOM, WARM = 20.0, 35.0
 COLDEST, WARMEST = 10.0, 37.0
 """°C between which the sessions before are measured."""
@@ -62,20 +62,20 @@ FEW = 100
 
 @dataclass(frozen=True)
 class Answer:
-    """What is said of one unit at `WARM` by laws learned from some sessions."""
+    """The answer to one unit at `WARM` by laws learned from some sessions."""
 
     by_law: bool
     """Whether it was called unfit at the reference's temperature."""
     undecided: bool
     """Whether it was neither fit nor unfit then."""
     covered: tuple[bool, ...]
-    """Of each parameter that something was taken off of, whether U covers what is left: nothing moved."""
+    """Whether U covers the remainder of each corrected parameter: nothing moved."""
     shares: tuple[float, ...]
-    """Of each of them, U in tolerances."""
+    """U of each corrected parameter, in tolerances."""
     found: bool
     """Whether a sensor whose bias has moved by 150 µg is called unfit by the law, for its bias."""
     excused: bool
-    """Whether it passes, having moved when the room became warmer for good."""
+    """Whether a sensor passes that moved when the room became warmer for good."""
 
 
 @dataclass(frozen=True)
@@ -85,13 +85,13 @@ class Judged:
     as_measured: bool
     """Whether it was called unfit without a law."""
     own: Answer
-    """By its own sessions."""
+    """The answer by its own sessions."""
     typed: Answer
-    """With the laws of its type."""
+    """The answer with the laws of its type."""
 
 
 def law_of(kind: str, rng: np.random.Generator) -> Array:
-    """(2, 4, 2) as `draw_law` has it."""
+    """(2, 4, 2) laws of one kind, as `draw_law` gives them."""
     if kind == LOOSE:
         line, bend = draw_law(4, rng, curved=False), draw_law(4, rng, curved=True)
         return np.stack([line[..., 0], BEND * bend[..., 1]], axis=-1)
@@ -124,13 +124,13 @@ class Scene:
     moved: Seen
     """The last one of a unit of which one bias moved before it."""
     name: str
-    """Of that sensor."""
+    """Name of that sensor."""
     stayed: tuple[Seen, ...]
-    """Of a unit whose bias moved when the room became warmer for good; empty where that is not asked."""
+    """Sessions of a unit whose bias moved when the room became warmer for good; empty where that is not asked."""
 
 
 def learned_laws(kind: str, seed: int) -> tuple[TypeLaw, ...]:
-    """Of a type whose units follow one kind of law."""
+    """The laws of a type whose units follow one kind of law."""
     return type_laws([_other(kind, (seed, 99, i)) for i in range(TYPE_UNITS)], TOLERANCES)
 
 
@@ -187,7 +187,7 @@ def _is_excused(scene: Scene, laws: Sequence[TypeLaw]) -> bool:
 
 
 def _stayed(world: Session, changed: Session, half: int, rng: np.random.Generator) -> tuple[Seen, ...]:
-    """So many sessions at 20 °C, and one more at 35 °C of the unit changed."""
+    """``half`` sessions at 20 °C, and one more than that at 35 °C of the changed unit."""
     nothing = np.zeros((2, world.unit.size, 2))
     before = [Unit(world, nothing, 0.0).at(ROOM + rng.normal(0, 1), i, rng) for i in range(half)]
     after = [Unit(changed, nothing, 0.0).at(WARM + rng.normal(0, 1), half + i, rng) for i in range(half + 1)]
@@ -212,7 +212,7 @@ Answers = dict[tuple[str, int], list[Judged]]
 
 
 def rows(answers: Answers) -> Iterator[tuple[str, ...]]:
-    """Of the table."""
+    """Rows of the table."""
     for (kind, learned), units in answers.items():
         as_measured = str(rate([one.as_measured for one in units]))
         for whose, said in (("–", [one.own for one in units]), (str(TYPE_UNITS), [one.typed for one in units])):

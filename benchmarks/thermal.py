@@ -73,7 +73,7 @@ CASES = (
 
 @dataclass(frozen=True, eq=False)
 class Truth:
-    """What the sensors really are; polynomials of (T − 20)/50."""
+    """The true parameters of the sensors; polynomials of (T − 20)/50."""
 
     scale: list[Array]
     """V per m/s²."""
@@ -86,7 +86,7 @@ class Truth:
 
 @dataclass
 class Tally:
-    """What a case gave."""
+    """Results of a case."""
 
     held: list[float] = field(default_factory=list)
     right: list[bool] = field(default_factory=list)
@@ -226,7 +226,7 @@ def compared(result: Calibration, truth: Truth, tally: Tally) -> Array:
 
 
 def run(case: Case, sessions: int, seed: int) -> Tally:
-    """So many sessions of a case."""
+    """Runs so many sessions of a case."""
     tally, rng = Tally(), np.random.default_rng([seed, *case.name.encode()])
     for _ in range(sessions):
         document, truth = draw(case, rng)

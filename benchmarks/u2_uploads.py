@@ -25,15 +25,15 @@ from service.storage.schema import upgrade
 from tests.service.made_sessions import session_bytes
 
 SECONDS = 8.0
-"""That each number of clients uploads."""
+"""Seconds that each number of clients uploads."""
 UNITS = 8
-"""Of each client."""
+"""Units of each client."""
 READ = 20
 """Uploads whose diagnosis is waited for, one after another."""
 WORK = "from an upload to its verdict, 24 × 2 readings of 6 sensors, "
 START = datetime(2020, 1, 1, tzinfo=UTC)
 numbers = count()
-"""Of the uploads of this run: no two are the same."""
+"""Numbers of the uploads of this run: no two are the same."""
 NOTE = """
 U2: on a machine that does much else one client waits 0.6 m, as the service shares its cores; these figures are of a
 quiet one.
@@ -42,7 +42,7 @@ quiet one.
 
 @dataclass(frozen=True)
 class Client:
-    """One that uploads without pause."""
+    """A client that uploads without pause."""
 
     port: int
     number: int

@@ -34,7 +34,7 @@ from tests.databases import postgres_databases
 from tests.end_to_end.browser.conftest import FLAGS, NAMES
 
 UNITS, SESSIONS, MANY = 10_000, 20, 500
-"""Of the fleet, of each of its units, and of one more unit."""
+"""Units of the fleet, sessions of each of its units, and sessions of one more unit."""
 ROUNDS, LOOKS = 5, 3
 """Times that each page is asked for, and looked at."""
 SERVER, PAINT = 0.5, 8.0
@@ -44,7 +44,7 @@ FAR = {"offline": False, "latency": 150, "downloadThroughput": 1.6e6 / 8, "uploa
 SLOWER = 4
 """Times that a phone's processor is slower than this one."""
 PAINTED = "performance.getEntriesByName('first-contentful-paint')"
-"""Of a page; empty before it."""
+"""Script for the first paint of a page; empty before it."""
 SOON = 20.0
 """Milliseconds between two looks at whether it is there."""
 SINCE = f"/api/v1/stands/{STANDS[0]}/resting-certificates?since=2025-06-01"
@@ -70,11 +70,11 @@ class Fleet:
     server: int
     """The process that started the database's others."""
     pages: dict[str, str]
-    """By name."""
+    """Pages by name."""
 
 
 def run() -> Iterator[Felt]:
-    """What pages take of the service, then when they are seen."""
+    """Measures the service's time for pages, then the time until they are seen."""
     with filled() as fleet:
         with closing(Asking(create_app(fleet.settings, clock=lambda: NOW))) as asking:
             yield from served(fleet, asking)
@@ -112,7 +112,7 @@ def filled() -> Iterator[Fleet]:
 
 
 def served(fleet: Fleet, asking: "Asking") -> Iterator[Felt]:
-    """Processor seconds of every page, and of what a fault of a stand concerns."""
+    """Processor seconds of every page, and of the list that a fault of a stand concerns."""
     reports = {f"report as {form.upper()}": f"/api/v1/fleet/report?format={form}" for form in ("pdf", "xlsx")}
     for name, path in (fleet.pages | reports).items():
         most = None if name in reports else SERVER
@@ -145,7 +145,7 @@ class Asking:
 
 
 def seen(address: str, pages: dict[str, str]) -> Iterator[Felt]:
-    """What a browser sees."""
+    """Measures pages in a browser."""
     found = next(filter(None, map(shutil.which, NAMES)), None)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=found, args=list(FLAGS))

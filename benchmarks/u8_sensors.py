@@ -26,7 +26,7 @@ def sessions() -> tuple[CalibrationSession, CalibrationSession]:
 
 
 def seconds(session: CalibrationSession) -> float:
-    """Of the processor, for one diagnosis."""
+    """Processor seconds of one diagnosis."""
     began = time.process_time()
     diagnose(session)
     return time.process_time() - began

@@ -50,7 +50,7 @@ def run() -> Iterator[Felt]:
 
 
 def certificate(folder: str) -> bytes:
-    """Of a session that is out of tolerance."""
+    """The certificate of a session that is out of tolerance."""
     with serving(folder) as port, httpx.Client(base_url=f"http://127.0.0.1:{port}/api/v1", timeout=120) as http:
         for content in FAILED:
             receipt = http.post("/sessions", content=content).raise_for_status().json()

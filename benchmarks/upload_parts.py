@@ -1,4 +1,4 @@
-"""What an upload's processor time goes into, part by part: of one session with 6 sensors, 24 positions and two runs.
+"""Processor time of an upload, part by part: of one session with 6 sensors, 24 positions and two runs.
 
 Each part is the least of many times in one process: what other programs cost is not in it. What the database's driver
 takes is counted within the whole upload, by SQLite; the rest is records and statements in Python, files and commits.
@@ -72,7 +72,7 @@ class Asked:
 
 
 def parts(storage: Storage) -> Iterator[tuple[str, float]]:
-    """What and how many milliseconds."""
+    """Name and milliseconds of each part."""
     files = [content() for _ in range(TIMES + UNITS)]
     for file in files[:UNITS]:
         upload(storage, file, "a.json", NOW)

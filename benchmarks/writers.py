@@ -47,7 +47,7 @@ def main() -> int:
 
 
 def write(url: str, name: str, threads: int, end: float, found: "Queue[tuple[str, list[float], int]]") -> None:
-    """What a process does until the end."""
+    """Writes in a process until the end."""
     database = open_database(url)
     with ThreadPoolExecutor(threads) as pool:
         own = [pool.submit(_write, database, end) for _ in range(threads)]

@@ -1,4 +1,4 @@
-"""What the stand applies: gravity, Earth rate and the applied vector of every row, with its errors.
+"""The vectors that a stand applies: gravity, Earth rate and the applied vector of every row, with its errors.
 
 Sources: analytic alignment paper, equations (7)–(11), (31), corrected as the errata state; Helmert (1901) gravity.
 Frames and signs: see the package page.
@@ -76,7 +76,7 @@ SCHEDULES = 32
 
 @dataclass(frozen=True, eq=False)
 class Geometry:
-    """What a schedule applies to every sensor. R rows, m sensors, k constant stand errors, block axes."""
+    """Applied vectors of a schedule on every sensor. R rows, m sensors, k constant stand errors, block axes."""
 
     n: Array
     """(R, m, 3) applied vectors, m/s² (rad/s)."""
@@ -116,19 +116,19 @@ def stand_vector(elevation: float, beta: Array, errors: StandErrors | None = Non
 
 @dataclass(frozen=True)
 class Schedule:
-    """All of a session on a stand that its geometry depends on, comparable and hashable by content: no reading."""
+    """Facts of a session on a stand that determine its geometry, comparable and hashable by content; no readings."""
 
     site: Site
     stand: Stand
     count_time: float | None
     kinds: tuple[str, ...]
-    """Of the m sensors."""
+    """Kinds of the m sensors."""
     bits: tuple[bytes, ...]
-    """Of β, the runs, the mounting and the turn of the flipped run."""
+    """Bytes of β, the runs, the mounting and the turn of the flipped run."""
 
     @classmethod
     def of(cls, session: CalibrationSession) -> "Schedule":
-        """Of a session on a stand."""
+        """The schedule of a session on a stand."""
         assert session.stand is not None
         assert session.beta is not None
         arrays = (session.beta, np.asarray(session.flipped, dtype=bool), session.mounting, session.flip_turn)
@@ -183,7 +183,7 @@ def magnitude(session: CalibrationSession | Schedule, kind: str) -> float:
 
 
 def _constant_weights(session: Schedule, kind: str) -> Array:
-    """(6, 3) how each constant error acts: as a raise of the head, a tilt across it (1 a rad), a stretch (1/s).
+    """(6, 3) action of each constant error: a raise of the head, a tilt across it (1 a rad), a stretch (1/s).
 
     Gyros by the paper's (31): the latitude raises; levelling and meridian tilt by their share of the Earth's rate.
     """
@@ -197,7 +197,7 @@ def _constant_weights(session: Schedule, kind: str) -> Array:
 
 
 def _kind_geometry(session: Schedule, kind: str) -> Array:
-    """(8, R, 3) for one kind of sensor: n, dn/d(each constant error), dn/dβ; m/s² (rad/s), per rad or s."""
+    """(8, R, 3) vectors for one kind of sensor: n, dn/d(each constant error), dn/dβ; m/s² (rad/s), per rad or s."""
     beta, size, angle = session.beta, magnitude(session, kind), elevation(session.stand, kind)
     sin, cos, level = np.sin(beta), np.cos(beta), np.ones_like(beta)
     lift, reach = np.sin(angle), np.cos(angle)
@@ -218,7 +218,7 @@ def stand_geometry(session: CalibrationSession) -> Geometry:
 
 @lru_cache(maxsize=SCHEDULES)
 def _geometry(schedule: Schedule) -> Geometry:
-    """The same of any session with this schedule."""
+    """The geometry of any session with this schedule; read only."""
     kinds = schedule.kinds
     different = list(dict.fromkeys(kinds))
     by_kind = np.stack([_kind_geometry(schedule, kind) for kind in different], axis=2)

@@ -33,14 +33,14 @@ class UnreadableError(ValueError):
         self.problem, self.path = problem, path
 
     def within(self, key: str | int) -> "UnreadableError":
-        """The same, seen from the object or list that holds the place."""
+        """The error as seen from the object or list that holds the place."""
         rest = f".{self.path}" if self.path and not self.path.startswith("[") else self.path
         return UnreadableError(self.problem, f"[{key}]{rest}" if isinstance(key, int) else f"{key}{rest}")
 
 
 @dataclass(frozen=True)
 class Form:
-    """How a value is written that its type does not tell; None is null in every form."""
+    """How to write a value when its type is not enough; None is null in every form."""
 
     write: Callable[[Any], Any]
     read: Reader
@@ -54,19 +54,19 @@ def named(*names: str) -> Form:
 
 
 DEGREES = Form(lambda angle: np.degrees(angle).tolist(), lambda listed: np.radians(np.array(listed, dtype=float)))
-"""Of angles, rad inside."""
+"""Form of angles: degrees in the document, rad inside."""
 RUN = Form(
     lambda flipped: ["flipped" if is_flipped else "direct" for is_flipped in flipped],
     lambda names: np.array([name == "flipped" for name in names]),
 )
-"""Of whether the block is flipped, row by row."""
+"""Form of (R,) bool, whether the block is flipped: the name of the run for each row."""
 MOMENT = Form(lambda stated: stated, in_utc)
-"""Of a moment in UTC, which earlier versions kept as the file states it."""
+"""Form of a moment in UTC; earlier versions kept it as the file states it."""
 
 
 @dataclass(frozen=True)
 class DocumentLayout:
-    """Where a document differs from its class; see `Document`."""
+    """The differences between a document and its class; see `Document`."""
 
     format: str = ""
     order: tuple[str, ...] = ()
@@ -103,12 +103,12 @@ class Document:
 
     @classmethod
     def from_dict(cls, document: Mapping[str, Any]) -> Self:
-        """What `to_dict` wrote; ValueError with the place of what cannot be read."""
+        """Reads a document that `to_dict` wrote; ValueError with the place of what cannot be read."""
         return PLAIN.read(cls, document)
 
 
 def layout_of(cls: type) -> DocumentLayout:
-    """Of any dataclass."""
+    """The layout of any dataclass."""
     return cls.layout if issubclass(cls, Document) else Document.layout
 
 
@@ -253,7 +253,7 @@ class Codec:
 
 @dataclass(frozen=True)
 class _Place:
-    """Where a field is read."""
+    """The place of a field in a document, with its reader."""
 
     name: str
     path: tuple[str, ...]
@@ -261,7 +261,7 @@ class _Place:
     has_default: bool
 
     def value_in(self, document: Any) -> Any:
-        """Its value; MISSING where the document lacks it and it has a default."""
+        """The field's value; MISSING where the document lacks it and it has a default."""
         for key in self.path:
             if not isinstance(document, Mapping) or key not in document:
                 if self.has_default:
@@ -362,8 +362,8 @@ SIMPLE: dict[Any, Reader] = {
     Any: with_messages,
 }
 PLAIN = Codec({})
-"""Of the estimator: no types beside those that every document has."""
+"""Codec of the estimator: no types beside those that every document has."""
 WITH_PARTS: Mapping[type, Form] = {Message: Form(as_document, with_messages)}
 """Messages with their parts, where they are to be said in any language later."""
 KEPT = Codec(WITH_PARTS)
-"""The same with them."""
+"""Codec that keeps messages with their parts."""

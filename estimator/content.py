@@ -1,4 +1,4 @@
-"""What depends on nothing but its subject, worked out once: of a session's content, or of an object while it lives.
+"""Results that depend on nothing but their subject, worked out once: for a session's content, or while an object lives.
 
 Whoever reads a session again has the same one: the next diagnosis of a unit asks for its earlier sessions anew.
 """
@@ -25,7 +25,7 @@ LARGEST = 600
 
 
 FIELDS = {kind: tuple(attribute.name for attribute in fields(kind)) for kind in (CalibrationSession, Sensor)}
-"""Of what holds arrays and cannot be compared itself."""
+"""Attributes by class, for classes that hold arrays and cannot be compared themselves."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Content:
 def remembered(
     function: Callable[[CalibrationSession, *Rest], Result],
 ) -> Callable[[CalibrationSession, *Rest], Result]:
-    """The same function of a session (and of what can be hashed), worked out once for each content that is not large.
+    """The function of a session (and of hashable arguments), worked out once for each content that is not large.
 
     Its result is shared, so that nobody may change it.
     """
@@ -57,7 +57,7 @@ def remembered(
 
 
 def once(function: Callable[[Owner, *Rest], Result]) -> Callable[[Owner, *Rest], Result]:
-    """The same function of an object that never changes (and of what can be hashed), worked out once while it lives.
+    """The function of an object that never changes (and of hashable arguments), worked out once in the object's life.
 
     Its result is shared, so that nobody may change it, and neither it nor the rest may hold the object.
     """
@@ -73,7 +73,7 @@ def once(function: Callable[[Owner, *Rest], Result]) -> Callable[[Owner, *Rest],
 
 
 class OfSession(Hashable, Protocol):
-    """What was worked out of a session; it never changes, and is distinguished from others by identity."""
+    """A result worked out of a session; it never changes, and is told from others by identity."""
 
     @property
     def session(self) -> CalibrationSession: ...
@@ -85,8 +85,8 @@ Worked = TypeVar("Worked", bound=OfSession)
 def each_remembered(
     function: Callable[[list[Worked], *Rest], list[Result]],
 ) -> Callable[[list[Worked], *Rest], list[Result]]:
-    """The same function of several, whose results do not depend on one another: what it was asked before, of the same
-    and with the same rest, is not worked out again where the session is not large.
+    """The function of several items, whose results do not depend on one another: an item that was asked for before,
+    with the same further arguments, is not worked out again unless its session is large.
 
     Its results are shared, so that nobody may change them.
     """

@@ -1,4 +1,4 @@
-"""What firmware does with a calibration: readings back to specific force or angular rate in block axes.
+"""Applies a calibration, as firmware does: readings back to specific force or angular rate in block axes.
 
 Theory
 ------
@@ -51,7 +51,7 @@ class SensorCorrection:
     axis: Array
     """(3,) unit vector, block axes."""
     tangents: Array
-    """(3, 2) of the axis, for its covariance."""
+    """(3, 2) tangents of the axis, for its covariance."""
 
     def input(self, readings: Array) -> Array:
         """y of readings (R,), or of any shape, reading units: the same shape, m/s² (rad/s)."""
@@ -76,7 +76,9 @@ class BlockCorrection:
     matrix: Array
     """(3, m) M, dimensionless."""
     covariance: Array
-    """(5 m, 5 m) of scale, bias, quadratic, axis_1, axis_2, sensor after sensor, SI; 0 for what is taken as known."""
+    """(5 m, 5 m) covariance of scale, bias, quadratic, axis_1, axis_2, sensor after sensor, SI; 0 for what is taken as
+    known.
+    """
 
     def components(self, readings: Array) -> Array:
         """a of readings (R, m), leading axes free, reading units: the same shape, m/s² (rad/s)."""
@@ -102,7 +104,7 @@ class BlockCorrection:
 
 @dataclass(frozen=True, eq=False)
 class Correction:
-    """Everything that a calibration corrects, and whom it cannot."""
+    """The corrections that a calibration gives, and the sensors that it cannot correct."""
 
     blocks: tuple[BlockCorrection, ...]
     """One a kind of sensor whose axes span all three directions."""
@@ -135,7 +137,7 @@ def correction_of(session: CalibrationSession, calibration: Calibration) -> Corr
 
 
 def _unseen(sensor: SensorCalibration) -> str:
-    """What is missing for an inversion; a quadratic term may be."""
+    """The parameters missing for an inversion, as a message; a quadratic term may be missing."""
     missing = [name for name in ("scale", "bias", "axis") if not sensor.observable.get(name, False)]
     return say("the session does not observe its {missing}", missing=joined(", ", missing)) if missing else ""
 
@@ -169,7 +171,9 @@ def _sensor(session: CalibrationSession, calibration: SensorCalibration) -> Sens
 
 
 def _covariance(calibration: Calibration, sensors: Sequence[SensorCorrection]) -> Array:
-    """(5 m, 5 m) of the sensors' parameters, SI; 0 for what is taken as known, NaN where the noise is unknown."""
+    """(5 m, 5 m) covariance of the sensors' parameters, SI; 0 for what is taken as known, NaN where the noise is
+    unknown.
+    """
     places = [calibration.names.index(f"{s.name}.{element}") for s in sensors for element in ELEMENTS]
     assumed = np.array([element == "quadratic" and not s.quadratic_known for s in sensors for element in ELEMENTS])
     return np.where(assumed | assumed[:, None], 0.0, calibration.covariance[np.ix_(places, places)])

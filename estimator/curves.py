@@ -16,7 +16,7 @@ from estimator.coverage import coverage_factor
 from estimator.session import Array
 
 HYSTERESIS, LAG, MISFIT = "hysteresis", "lag", "lack-of-fit"
-"""What readings show beside a curve."""
+"""Effects that readings may show beside a curve."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,9 +26,9 @@ class Curve(Document):
     coefficients: Array
     """(q,) SI (for a scale factor reading units per SI) per K^k."""
     order: int
-    """Of the polynomial that the readings ask for."""
+    """Order of the polynomial that the readings ask for."""
     covariance: Array
-    """(q, q) of the coefficients, those left out included."""
+    """(q, q) covariance of the coefficients, those left out included."""
     scatter: float = 0.0
     """One sigma of what no such polynomial follows, from temperature to temperature; SI."""
     loop: float = 0.0
@@ -44,14 +44,14 @@ class SensorCurves(Document):
     name: str
     bias: Curve
     scale: Curve | None = None
-    """None where the session does not show it, as of gyros at rest."""
+    """Curve of the scale factor; None where the session does not show it, as for gyros at rest."""
     cross: Array | None = None
     """(q, q) covariance of the scale factor's coefficients with the bias'."""
 
 
 @dataclass(frozen=True)
 class ThermalFinding(Document):
-    """What the readings of a sensor show beside its curve."""
+    """An effect that the readings of a sensor show beside its curve."""
 
     kind: str
     sensor: str
@@ -59,18 +59,18 @@ class ThermalFinding(Document):
     amplitude: float
     """Warming less cooling in the middle of the range; of a lag the largest departure; of a misfit its sigma; SI."""
     sigma: float
-    """One sigma of it; 0 of a misfit."""
+    """One sigma of the amplitude; 0 for a misfit."""
     p_value: float
-    """By chance, over all sensors and forms tried."""
+    """Chance of as large an effect where there is none, over all sensors and forms tried."""
     time_constant: float | None = None
-    """Of a lag, s."""
+    """Time constant of a lag, s."""
     alternatives: tuple[str, ...] = ()
     """Kinds that explain the same readings nearly as well."""
 
 
 @dataclass(frozen=True, eq=False)
 class ThermalCurves(Document):
-    """Everything that a thermal programme says over temperature."""
+    """Results of a thermal programme over temperature."""
 
     reference_temperature: float
     """T₀, °C."""
@@ -90,7 +90,7 @@ class ThermalCurves(Document):
         return np.vander(np.atleast_1d(temperature) - self.reference_temperature, count, increasing=True)
 
     def value(self, curve: Curve, temperature: Array) -> Array:
-        """(n,) of the parameter, SI, at temperatures (n,), °C."""
+        """(n,) values of the parameter, SI, at temperatures (n,), °C."""
         return self.powers(temperature, len(curve.coefficients)) @ curve.coefficients
 
     def sigma(self, curve: Curve, temperature: Array) -> Array:

@@ -23,7 +23,7 @@ def _by_sensor(directions: Array, vectors: Array) -> Array:
 
 
 def input_of(p: SensorParameters, n: Array) -> Array:
-    """What the sensor integrates, a + b + c·a², at the input: (..., R, m) for n (R, m, 3), m/s² (rad/s) each."""
+    """The sensor's input, a + b + c·a²: (..., R, m) for n (R, m, 3), m/s² (rad/s) each."""
     a = projected(p.axis, n)
     return a + p.bias[..., None, :] + p.quadratic[..., None, :] * a * a
 
@@ -34,7 +34,7 @@ def response(p: SensorParameters, n: Array) -> Array:
 
 
 def slope(p: SensorParameters, n: Array) -> Array:
-    """How the input answers to a change of a, 1 + 2·c·a: (..., R, m) dimensionless for n (R, m, 3), m/s² (rad/s)."""
+    """Derivative of the input by a, 1 + 2·c·a: (..., R, m) dimensionless for n (R, m, 3), m/s² (rad/s)."""
     return 1.0 + 2.0 * p.quadratic[..., None, :] * projected(p.axis, n)
 
 

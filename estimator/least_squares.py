@@ -21,7 +21,7 @@ FLAT = 1e-9
 """Share of the largest singular value below which a direction of columns is rounding."""
 
 FAINT = 1e-6
-"""The same of an information that was added up and kept in steps."""
+"""Relative size below which a direction of an information that was added up and kept in steps is rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,11 +29,11 @@ class LeastSquaresFit:
     """A regression on q columns."""
 
     value: Array
-    """(q, …) in the columns' units."""
+    """(q, …) coefficients in the columns' units."""
     covariance: Array
     """(q, q)."""
     chi2: Array
-    """(…) of what is left, of the prior's rows too."""
+    """(…) χ² of the residuals, of the prior's rows too."""
     rank: int
     """Directions that count."""
     freedom: int
@@ -72,7 +72,7 @@ def orthonormal(columns: Array, faint: float) -> Array:
 
 
 def scale_of(F: Array) -> Array:
-    """(…, q) by which an information (…, q, q) has a diagonal of one; 0 of what it says nothing of."""
+    """(…, q) factors that give an information (…, q, q) a diagonal of one; 0 where it says nothing."""
     size = np.sqrt(np.maximum(np.diagonal(F, axis1=-2, axis2=-1), 0.0))
     return np.where(size > 0, 1 / np.where(size > 0, size, 1.0), 0.0)
 

@@ -13,11 +13,11 @@ from typing import Any
 from estimator.json_object import Json
 
 PLACE = re.compile(r"\{(\w+)\}")
-"""Where a part stands in a template."""
+"""Place of a part in a template."""
 PLACES = re.compile(r"(\{\w+\})")
 MARK = "message"
 KEYS = frozenset((MARK, "parts", "many", "number"))
-"""Under which JSON keeps a message."""
+"""Keys under which JSON keeps a message."""
 NO_PARTS: Mapping[str, str] = MappingProxyType({})
 
 
@@ -54,7 +54,7 @@ class Message(str):
         return joined("", (other, self))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """For copies and for other processes."""
+        """Pickles the message for copies and for other processes."""
         return Message, (self.template, dict(self.parts), self.many, self.number)
 
 
@@ -81,17 +81,17 @@ def joined(joint: str, parts: Iterable[str]) -> Message:
 
 
 def capitalised(text: str) -> str:
-    """The same with a capital letter."""
+    """The text with a capital first letter."""
     return _begun(text, str.upper)
 
 
 def uncapitalised(text: str) -> str:
-    """The same with a small first letter."""
+    """The text with a small first letter."""
     return _begun(text, str.lower)
 
 
 def without_stop(text: str) -> str:
-    """The same without its full stop."""
+    """The text without its full stop."""
     if not isinstance(text, Message):
         return text.removesuffix(".")
     if last := re.search(r"\{(\w+)\}$", text.template):
@@ -100,7 +100,7 @@ def without_stop(text: str) -> str:
 
 
 def changed(text: str, change: Callable[[str], str]) -> str:
-    """The same with every text that it is made of changed."""
+    """The text with ``change`` applied to every text that it is made of."""
     if not isinstance(text, Message):
         return change(text)
     parts = {name: changed(part, change) for name, part in text.parts.items()}
@@ -139,7 +139,7 @@ def _texts(parts: Mapping[str, object]) -> dict[str, str]:
 
 
 def _begun(text: str, change: Callable[[str], str]) -> str:
-    """With another first letter."""
+    """The text with another first letter."""
     if not isinstance(text, Message):
         return change(text[:1]) + text[1:]
     if first := PLACE.match(text.template):

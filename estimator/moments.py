@@ -8,7 +8,7 @@ from estimator.message import say, say_count
 
 
 def moment(stated: str) -> datetime:
-    """What a text states, in UTC; without an offset it is UTC.
+    """Reads a moment into UTC; without an offset it is UTC.
 
     Raises
     ------
@@ -19,7 +19,7 @@ def moment(stated: str) -> datetime:
 
 
 def local_moment(stated: str) -> datetime:
-    """The same with the offset that is stated; ValueError where it is no date and time."""
+    """The moment with the offset that is stated, or else in UTC; ValueError where it is no date and time."""
     at = datetime.fromisoformat(stated)
     return at if at.tzinfo else at.replace(tzinfo=UTC)
 
@@ -35,7 +35,7 @@ def written(at: datetime) -> str:
 
 
 def in_utc(stated: str | None) -> str | None:
-    """The same moment in UTC; None where nothing is stated, which earlier versions also wrote as an empty text."""
+    """The moment in UTC; None where nothing is stated, which earlier versions also wrote as an empty text."""
     return written(moment(stated)) if stated else None
 
 

@@ -1,4 +1,4 @@
-"""What a host gets wrong that turns readings into a vector by the nominal numbers, as a matrix and an offset.
+"""Errors of a host that turns readings into a vector by the nominal numbers, as a matrix and an offset.
 
 Theory
 ------
@@ -26,7 +26,7 @@ from estimator.session import Array, CalibrationSession
 
 @dataclass(frozen=True, eq=False)
 class NominalVector:
-    """How the vector of the nominal numbers differs from the true one, for the sensors of one kind."""
+    """Difference between the vector by the nominal numbers and the true one, for the sensors of one kind."""
 
     kind: str
     matrix: Array
@@ -34,7 +34,7 @@ class NominalVector:
     offset: Array
     """(3,) d, m/s² (rad/s)."""
     covariance: Array
-    """(12, 12) of S row by row and then o; NaN where the noise cannot be estimated."""
+    """(12, 12) covariance of S row by row and then o; NaN where the noise cannot be estimated."""
     curvature: float
     """Largest |c| of the sensors, s²/m (s/rad): c·a² is what the matrix cannot hold."""
 
@@ -65,7 +65,7 @@ def nominal_vectors(session: CalibrationSession, block: BlockCorrection, reading
 
 
 def nominal_vector(session: CalibrationSession, block: BlockCorrection) -> NominalVector:
-    """What the nominal numbers of a session get wrong, by the correction of its sensors of one kind.
+    """The errors of a session's nominal numbers, by the correction of its sensors of one kind.
 
     Raises
     ------
@@ -92,7 +92,7 @@ def _nominal(session: CalibrationSession, block: BlockCorrection) -> tuple[Array
 
 
 def _jacobian(block: BlockCorrection, by_scale: Array, weighted: Array, inverse: Array, offset: Array) -> Array:
-    """(12, 5 m) of S and o by scale, bias, quadratic and the axis' two tangents, sensor after sensor."""
+    """(12, 5 m) derivatives of S and o by scale, bias, quadratic and the axis' two tangents, sensor after sensor."""
     columns = []
     for i, sensor in enumerate(block.sensors):
         moved = [(np.outer(by_scale[:, i], sensor.axis), by_scale[:, i] * sensor.bias)]

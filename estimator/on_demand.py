@@ -1,4 +1,4 @@
-"""What is imported when it is first used: a session on a stand is calibrated without the alignment and its filter.
+"""Modules imported on first use: a session on a stand is calibrated without the alignment and its filter.
 
 Most of what Python would import for the package is for what a single use does not touch. The type checker is shown
 ordinary imports beside every use of these, and so are the checks of which way imports run.

@@ -14,7 +14,7 @@ from estimator.arrays import tangents, unit
 from estimator.session import ACCELEROMETER, Array, Sensor
 
 ELEMENTS = ("scale", "bias", "quadratic", "axis_1", "axis_2")
-"""Of one sensor, in the order of every parameter vector."""
+"""Elements of one sensor, in the order of every parameter vector."""
 
 PLAUSIBLE = 0.1
 """One sigma of what a dimensionless element could be at all: 10 % of scale, 0.1 g, 0.1/g, 0.1 rad.
@@ -46,7 +46,7 @@ class SensorParameters:
         return tangents(self.axis)
 
     def at(self, sessions: Array | int) -> "SensorParameters":
-        """Those of one session, or of several, by their place (number, or (k,) of them) on the first axis."""
+        """The parameters of one session, or of several, by their place (number, or (k,) of them) on the first axis."""
         return SensorParameters(
             self.scale[sessions], self.bias[sessions], self.quadratic[sessions], self.axis[sessions]
         )
@@ -92,7 +92,7 @@ def units(sensors: tuple[Sensor, ...]) -> tuple[str, ...]:
 
 
 def nominal(sensors: tuple[Sensor, ...]) -> SensorParameters:
-    """What the unit's maker states: nominal scale and axis, no bias, no nonlinearity."""
+    """The maker's parameters: nominal scale and axis, no bias, no nonlinearity."""
     zero = np.zeros(len(sensors))
     return SensorParameters(
         scale=np.array([s.nominal_scale for s in sensors]),

@@ -21,7 +21,7 @@ else:
 
 
 def calibrate(session: CalibrationSession, *, quadratic: bool | None = None) -> Calibration:
-    """What a session says of its block's sensors.
+    """Calibrates a session by its programme.
 
     Parameters
     ----------

@@ -36,7 +36,7 @@ BLOCKS = 16
 """Blocks of a rest: five octaves of correlation times."""
 
 ROUNDS = 60
-"""Of the ascent: two sizes settle to a per cent in some dozens."""
+"""Rounds of the ascent: two sizes settle to a per cent in some dozens."""
 
 RESTLESS = 3.0
 """Energy of a rest over all waves and channels, in usual ones, from which it has a standard error of its own: some
@@ -52,7 +52,7 @@ MOST = 256
 
 @dataclass(frozen=True, eq=False)
 class Waves:
-    """What n rests of m channels show. B blocks a rest."""
+    """Spectral data of n rests of m channels. B blocks a rest."""
 
     value: Array
     """(n, B − 1, m) cosine transform z of the block means, unit of the readings; I = z²."""
@@ -61,7 +61,9 @@ class Waves:
     least: Array
     """(n, m) variance of the mean if the samples were independent, unit of the readings squared."""
     inside: Array
-    """(n, m) the same, by the scatter within the blocks: of what is faster than they are."""
+    """(n, m) variance of the mean from the scatter within the blocks, unit of the readings squared: the part that is
+    faster than they are.
+    """
 
     @property
     def known(self) -> Array:
@@ -75,8 +77,9 @@ def block_count(samples: Indices) -> int | None:
 
 
 def waves(readings: Array, start: Indices, stop: Indices) -> Waves | None:
-    """Of readings (R, m), any unit, in rests from ``start`` to ``stop`` (n,), without unit; None where all are too
-    short to have a scatter."""
+    """The waves of readings (R, m), any unit, in rests from ``start`` to ``stop`` (n,), without unit; None where all
+    are too short to have a scatter.
+    """
     samples = stop - start
     count = block_count(samples)
     if count is None:
@@ -100,8 +103,8 @@ def waves(readings: Array, start: Indices, stop: Indices) -> Waves | None:
 
 
 def waves_of(means: Array, variance: Array, samples: Indices, held: Array | None = None) -> Waves:
-    """Of block means (n, B, m), variances (n, m) of one sample, units of the readings (squared), and ``samples`` (n,),
-    of which each channel ``held`` (n, m); all unless given.
+    """The waves of block means (n, B, m), variances (n, m) of one sample, units of the readings (squared), and
+    ``samples`` (n,), of which each channel ``held`` (n, m); all unless given.
 
     NaN where a rest is a single sample. White noise of which some samples are left out is white noise of fewer, larger
     ones: the waves show it, and what a mean has follows from them.
@@ -135,7 +138,7 @@ def mixture(samples: Array, count: int) -> tuple[Array, Array]:
 
 @dataclass(frozen=True, eq=False)
 class Tilting:
-    """How the block may tilt within its rests (`estimator.rest_tilt`)."""
+    """Possible tilts of the block within its rests (`estimator.rest_tilt`)."""
 
     response: Array
     """(n, m, 2) L, change of the readings with the two components of the tilt, unit of the readings per rad."""
@@ -143,7 +146,7 @@ class Tilting:
     """Waves k = 1 … that a tilt may explain; the others are the sensors' own."""
 
     def at(self, chosen: Array) -> "Tilting":
-        """Of the ``chosen`` rests, as they index (n,)."""
+        """The tilting of the ``chosen`` rests, as they index (n,)."""
         return self if not self.count else Tilting(self.response[chosen], self.count)
 
 
@@ -173,7 +176,7 @@ def tilts_of(z: Array, S: Array, response: Array) -> tuple[Array, Array, Array]:
 
 
 def weighed(z: Array, S: Array, tilting: Tilting) -> WeighedWaves:
-    """Of waves z (n, B − 1, m), any unit, of spectrum S, its square."""
+    """Weighs waves z (n, B − 1, m), any unit, by their spectrum S, its square."""
     S = np.where(S > 0, S, 1.0)  # readings that never change
     pull, left, log = z / S, 1 / S, float(np.log(S).sum())
     if tilting.count:
@@ -198,7 +201,9 @@ def fitted(z: Array, spectra: Array, tilting: Tilting) -> Array:
 
 
 def log_likelihood(z: Array, S: Array, tilting: Tilting) -> float:
-    """Of waves z (n, B − 1, m) under a spectrum of the same shape, units squared; all channels together."""
+    """Log likelihood of waves z (n, B − 1, m) under a spectrum of the same shape, units squared; all channels
+    together.
+    """
     w = weighed(z, S, tilting)
     return -0.5 * (w.log + float((z * w.pull).sum()))
 
@@ -232,12 +237,14 @@ def noises(z: Array, spectra: Array, tilting: Tilting) -> Noises:
 
 @dataclass(frozen=True, eq=False)
 class RestNoise:
-    """What the waves of n rests say of their m channels."""
+    """Noise of m channels by the waves of n rests."""
 
     variance: Array
-    """(n, m) of the mean of each rest, unit of the readings squared."""
+    """(n, m) variance of the mean of each rest, unit of the readings squared."""
     spectrum: Array
-    """(k, B − 1, m) of the k rests of more than a single sample, the same unit; 1 of readings that never change."""
+    """(k, B − 1, m) spectrum of the k rests of more than a single sample, unit of the readings squared; 1 of readings
+    that never change.
+    """
 
 
 def rest_noise(waves: Waves, tilting: Tilting = STEADY) -> RestNoise:

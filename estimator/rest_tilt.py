@@ -1,4 +1,4 @@
-"""How well the means of rests are known in which the block tilts a little: a hand that holds it, a seat that settles.
+"""The uncertainty of the means of rests in which the block tilts a little: held by hand, or on a seat that settles.
 
 Theory
 ------
@@ -47,7 +47,7 @@ TINY = float(np.finfo(float).tiny)
 
 @dataclass(frozen=True, eq=False)
 class MeanErrors:
-    """Of the means of n rests of m channels."""
+    """Standard errors of the means of n rests of m channels."""
 
     alone: Array
     """(n, m) standard error of what each channel has alone, unit of the readings."""
@@ -56,7 +56,9 @@ class MeanErrors:
 
 
 def errors_of_means(waves: Waves, response: Array | None) -> MeanErrors:
-    """Of rests in which a tilt moves the readings by ``response`` (n, m, 2), their unit per rad; None: none does."""
+    """Errors in rests in which a tilt moves the readings by ``response`` (n, m, 2), their unit per rad; None: none
+    does.
+    """
     plain = rest_noise(waves)
     count = 0 if response is None else tilting_waves(waves, plain, response)
     if response is None or not count:
@@ -89,7 +91,8 @@ def tilting_waves(waves: Waves, plain: RestNoise, response: Array) -> int:
 
 def are_separable(response: Array, count: int) -> bool:
     """Whether ``count`` waves a rest separate the sensors' own noises, beside a tilt that moves the readings by
-    ``response`` (n, m, 2), their standard deviations per rad."""
+    ``response`` (n, m, 2), their standard deviations per rad.
+    """
     m, spread = response.shape[1], np.linalg.svd(response, compute_uv=False)
     if m < 3 or (spread[:, 1] <= FLATTEST * spread[:, 0]).any():
         return False

@@ -21,7 +21,7 @@ NOMINAL_AXES = "nominal-axes"
 COVERAGE = 2.0
 """Coverage factor for known noise, 95.45 %; with few degrees of freedom it is Student's t of the same probability."""
 PARAMETERS = ("scale", "bias", "quadratic", "axis")
-"""Of a sensor, as people judge them: the axis with both its turns."""
+"""Parameters of a sensor, as people judge them: the axis with both its turns."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class Estimate(Document, order=("value", "sigma", "repeatability", "dof", "cover
 
     @property
     def coverage_factor(self) -> float | None:
-        """The same of `COVERAGE`; None where sigma is not known."""
+        """The coverage factor for `COVERAGE`; None where sigma is not known."""
         return None if self.sigma is None else self.factor()
 
 
@@ -55,7 +55,7 @@ class KnownCombination:
     coefficients: dict[str, float]
     value: float
     sigma: float | None
-    """None when the noise cannot be estimated."""
+    """One sigma of the value; None when the noise cannot be estimated."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +72,7 @@ class SensorCalibration(
     },
     optional=("misalignment",),
 ):  # fmt: skip
-    """What the session says of one sensor. Units: see the package page."""
+    """Calibration of one sensor. Units: see the package page."""
 
     name: str
     kind: str
@@ -88,7 +88,7 @@ class SensorCalibration(
     observable: dict[str, bool]
     """Keys scale, bias, quadratic, axis; of a session that does not speak of all of them, those that it speaks of."""
     known: tuple[KnownCombination, ...] = ()
-    """What is known of the parameters that are not observable one by one."""
+    """Known combinations of the parameters that are not observable one by one."""
     misalignment: Estimate | None = None
     """Turn of a gyro's input axis toward the axis of a turntable (E_xz, E_yz), rad; only of sessions on one."""
     axis_dof: float | None = None
@@ -103,12 +103,12 @@ class SensorCalibration(
 
     @property
     def axis_sigma_arcsec(self) -> float | None:
-        """The same in arcsec."""
+        """`axis_sigma` in arcsec."""
         return None if self.axis_sigma is None else self.axis_sigma / ARCSEC
 
     @property
     def axis_coverage_factor(self) -> float | None:
-        """Of the axis, by `COVERAGE`; None where its sigma is not known."""
+        """Coverage factor of the axis, by `COVERAGE`; None where its sigma is not known."""
         return None if self.axis_sigma is None else self.factor("axis")
 
     def factor(self, parameter: str, k: float = COVERAGE) -> float:
@@ -121,7 +121,7 @@ class SensorCalibration(
 
 @dataclass(frozen=True)
 class Fit(Document, forms={"weakest": named("parameter", "sigma")}):
-    """How well the model fits the readings."""
+    """Quality of the fit to the readings."""
 
     chi2: float
     dof: int
@@ -147,7 +147,7 @@ class Fit(Document, forms={"weakest": named("parameter", "sigma")}):
 
     @property
     def is_exact(self) -> bool:
-        """Whether the parameters take all that the readings tell: nothing is left over to judge the model by."""
+        """Whether the fit is exact: no degree of freedom is left over to judge the model by."""
         return self.dof < 1
 
 
@@ -172,7 +172,7 @@ class Residuals(
     temperature: Array | None
     """(R,) °C, or None."""
     enlarged_by: float | None = None
-    """How many times ``sigma`` is the noise as it was stated or, where it was not, estimated; None where unknown."""
+    """Ratio of ``sigma`` to the noise as stated or, where it was not, estimated; None where unknown."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -206,7 +206,9 @@ class Calibration(
     fit: Fit
     residuals: Residuals
     gauge: str
-    """What holds the block's frame: ``stand``, ``directions`` or ``nominal-axes`` (no net turn of all axes)."""
+    """Reference that holds the block's frame: ``stand``, ``directions`` or ``nominal-axes`` (no net turn of all
+    axes).
+    """
     site: Site | None = None
     """Site of the session, as stated, SI; None of a result of an earlier version."""
     parity: Json | None = None

@@ -15,7 +15,7 @@ SMALL = 1e-4
 FAINT = 1e-9
 """Weight of no turn at all: above the rounding of vectors that share a line, and nothing beside any that do not."""
 ROUNDS = 30
-"""Of the reweighting; a start needs no more."""
+"""Rounds of reweighting; a start needs no more."""
 CLOSEST = 1e-9
 """Distance, rad (0.0002″), below which vectors weigh alike: a perfect agreement may not weigh without bound."""
 SETTLED = 1e-12

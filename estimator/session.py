@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from estimator.codec import Document
 
 Array = NDArray[Any]
-"""Of any number type; shapes and units stand where an array is declared."""
+"""Array of any number type; shapes and units stand where an array is declared."""
 
 ACCELEROMETER, GYROSCOPE = "accelerometer", "gyroscope"
 """Kinds of sensor, and of block, as session files name them."""
@@ -30,19 +30,19 @@ PROGRAMMES = (TWO_AXIS_STAND, ARBITRARY_ORIENTATIONS, ROTATION_ALIGNMENT, RATE_T
 """All, as session files name them."""
 AS_FOUND, AS_LEFT = "as-found", "as-left"
 STAGES = (AS_FOUND, AS_LEFT)
-"""Before and after a unit was worked on."""
+"""Stages of a session: before and after a unit was worked on."""
 MEASURED, SIMULATED = "measured", "simulated"
 ORIGINS = (MEASURED, SIMULATED)
-"""Where the readings come from."""
+"""Origins of the readings."""
 FREE_RUNNING, RESET = "free-running", "reset"
 COUNTERS = (FREE_RUNNING, RESET)
-"""How pulses are counted: the difference of two readings of a counter that runs on, or from zero every time."""
+"""Ways of counting pulses: the difference of two readings of a counter that runs on, or from zero every time."""
 QUANTISATION = {FREE_RUNNING: 1 / 6, RESET: 1 / 12}
 """Variance of one count, pulses²: a reading is rounded, which is uniform (1/12); a difference holds two of them."""
 
 
 CORRECTED_SAMPLES, LEFT_OUT, NOTED = "corrected", "left-out", "noted"
-"""What was done about a thing that the screening of a raw file found."""
+"""Actions on a thing that the screening of a raw file found."""
 
 
 @dataclass(frozen=True)
@@ -52,16 +52,16 @@ class ScreenFinding:
     kind: str
     """One of `estimator.screening.KINDS`."""
     sensors: tuple[str, ...]
-    """None where it is the clock's."""
+    """Names of the sensors; empty where it is the clock's."""
     rows: int
-    """How many it touches."""
+    """Number of rows that it touches."""
     first_row: int | None
-    """Counted from 1, as people do; None where it is of the whole file."""
+    """First row, counted from 1; None where it concerns the whole file."""
     last_row: int | None
     action: str
     """``corrected``, ``left-out`` or ``noted``."""
     message: str
-    """In a sentence, for people."""
+    """The finding in a sentence, for people."""
 
 
 def comparable(programme: str) -> tuple[str, ...]:
@@ -91,7 +91,7 @@ class Sensor:
 
 @dataclass(frozen=True)
 class Site:
-    """Where the session was measured."""
+    """Place where the session was measured."""
 
     latitude: float | None = None
     """Geodetic latitude, rad."""
@@ -135,23 +135,27 @@ class SetAside(Document):
 
     sensor: str
     row: int
-    """Counted from 1, in the order measured."""
+    """Row, counted from 1, in the order measured."""
     last_row: int
-    """The same, except of a stretch."""
+    """Last row of a stretch; otherwise the same row."""
     reading: float
-    """As the file states it, reading units."""
+    """Reading as the file states it, reading units."""
     expected: float
-    """By everything else in the session, reading units; of a stretch in its first row. NaN where nothing tells it."""
+    """Reading expected from everything else in the session, reading units; in the first row of a stretch. NaN where it
+    cannot be predicted.
+    """
     size: float
     """Reading less expected, at the input: m/s² (rad/s)."""
     sigma: float
     """One sigma of the size, m/s² (rad/s)."""
     slip: str
-    """The likely one: ``zero``, ``sign``, ``decimal-point``, ``neighbour-column``, ``row-before``, ``unplugged``,
-    ``stuck`` or ``unknown``."""
+    """Likely kind of slip: ``zero``, ``sign``, ``decimal-point``, ``neighbour-column``, ``row-before``, ``unplugged``,
+    ``stuck`` or ``unknown``.
+    """
     suspects: tuple[str, ...] = ()
-    """Where the row cannot tell which sensor is wrong: those that may be, ``sensor`` among them; the whole row then
-    takes no part."""
+    """Sensors that may be wrong, ``sensor`` among them, where the row cannot tell which is; the whole row then takes no
+    part.
+    """
 
     @property
     def strength(self) -> float:
@@ -228,7 +232,7 @@ class CalibrationSession:
     origin: str | None = None
     """``simulated``; None when measured, which is what a file without the field says."""
     screening: tuple[ScreenFinding, ...] = ()
-    """What was found in the raw rows before they were averaged; samples left out are NaN in ``readings``."""
+    """Findings in the raw rows before they were averaged; samples left out are NaN in ``readings``."""
     unscreened: tuple[str, ...] = ()
     """Kinds that the file declines to be screened for."""
     set_aside: tuple[SetAside, ...] = ()
@@ -253,7 +257,9 @@ class CalibrationSession:
 
     @property
     def subjects(self) -> tuple[str, str | None, str]:
-        """Serial, type and stand: whose a lasting effect in it may be; no stand is an empty name."""
+        """Serial, type and stand that a lasting effect in the session may belong to; an empty name where there is no
+        stand.
+        """
         return self.unit, self.unit_type, self.stand.id if self.stand else ""
 
     @property

@@ -1,4 +1,4 @@
-"""How unlikely a χ² is by chance, over everything that was tried.
+"""Chance of a χ² as large, over everything that was tried.
 
 Where the noise is stated, a χ² of n numbers follows its distribution. Where it was estimated with ν degrees of freedom,
 χ²/n follows Fisher's F of n and ν.

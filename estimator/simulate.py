@@ -95,7 +95,7 @@ def draw_stand(session: CalibrationSession, rng: np.random.Generator) -> StandDr
 
 
 def true_vectors(session: CalibrationSession, draw: StandDraw) -> Array:
-    """(R, m, 3) what the stand really applied, exact in its errors, m/s² (rad/s), block axes."""
+    """(R, m, 3) vectors that the stand really applied, exact in its errors, m/s² (rad/s), block axes."""
     assert session.stand is not None
     assert session.beta is not None
     phi, e = session.site.latitude or 0.0, draw.constant
@@ -193,7 +193,9 @@ def whole_pulses(session: CalibrationSession) -> CalibrationSession:
 
 
 def orientation_vectors(schedule: CalibrationSession, rng: np.random.Generator) -> Array:
-    """(R, m, 3) what still orientations apply, m/s² (rad/s): gravity, to gyros the Earth's rate at a random heading."""
+    """(R, m, 3) vectors applied in still orientations, m/s² (rad/s): gravity, to gyros the Earth's rate at a random
+    heading.
+    """
     assert schedule.directions is not None
     up, phi = schedule.directions, schedule.site.latitude or 0.0
     heading = rng.uniform(0, 2 * np.pi, len(up))

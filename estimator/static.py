@@ -79,7 +79,7 @@ class Intervals:
         return self.stop - self.start
 
     def at(self, chosen: NDArray[np.bool_]) -> "Intervals":
-        """Those of the stretches that are ``chosen`` (n,)."""
+        """The stretches that are ``chosen`` (n,)."""
         return Intervals(self.start[chosen], self.stop[chosen])
 
     def sums(self, values: Array) -> Array:
@@ -100,8 +100,9 @@ class Intervals:
 
 
 TiltResponse = Callable[[CalibrationSession], Array | None]
-"""Of an averaged session: (n, m, 2) change of every reading, in its unit per rad, with the two tilts of its row, 0 of
-gyros; None where a tilt is an error of its row."""
+"""Function of an averaged session: (n, m, 2) change of every reading, in its unit per rad, with the two tilts of its
+row, 0 for gyros; None where a tilt is an error of its row.
+"""
 
 
 def average(
@@ -148,7 +149,7 @@ def with_readings(session: CalibrationSession, intervals: Intervals) -> Interval
 
 
 def enough(intervals: Intervals, known: Array, sensors: tuple[Sensor, ...]) -> Intervals:
-    """Those in which ``known`` (n, m) samples of every channel are enough for a mean."""
+    """The stretches with enough samples ``known`` (n, m) of every channel for a mean."""
     least = np.minimum(np.maximum(KEPT * intervals.samples, 2), intervals.samples)
     held = known >= least[:, None]
     if len(held) and not held.all(axis=1).any():
@@ -181,7 +182,7 @@ def at_rest(session: CalibrationSession, intervals: Intervals) -> Intervals:
 
 
 def require_still(intervals: Intervals, moves: NDArray[np.bool_]) -> Intervals:
-    """The same, given in which of them the block ``moves`` (n,)."""
+    """The labelled stretches; ScheduleError where the block ``moves`` (n,) in most of them."""
     if 2 * np.count_nonzero(moves) <= len(intervals):
         return intervals
     rows = joined(
@@ -243,7 +244,7 @@ def turned(sensor: Sensor, drift: Array, variance: Array) -> NDArray[np.bool_]:
 
 @dataclass(frozen=True, eq=False)
 class Quietness:
-    """How still each window of a log is."""
+    """Variance of each window of a log."""
 
     block: int
     """Samples a block; windows start at every block and are `BLOCKS` long."""
@@ -263,7 +264,9 @@ def block_length(rate: float) -> int:
 
 
 def quietness_of(block: int, mean: Array, within: Array, steps: Array) -> Quietness:
-    """From the `moments` (blocks, m) of blocks of so many samples, and the `smallest_steps` (m,), reading units."""
+    """Quietness from the `moments` (blocks, m) of blocks of so many samples, and the `smallest_steps` (m,), reading
+    units.
+    """
     count, m = mean.shape
     if count < BLOCKS:
         return Quietness(block, np.empty(0))
@@ -319,7 +322,7 @@ def watched_for_rest(session: CalibrationSession) -> NDArray[np.bool_]:
 
 
 def no_rests_message(samples: int) -> str:
-    """What to tell the person whose log never stands still."""
+    """The message to a person whose log never stands still."""
     return say(
         "in {samples} samples the block is still for {window} s fewer than {fewest} times; rest longer in each "
         "orientation, check sample_rate_hz, or label the still samples in a position column",
@@ -359,13 +362,13 @@ def variances(session: CalibrationSession, intervals: Intervals) -> Array:
 
 
 def contiguous(session: CalibrationSession) -> bool:
-    """Whether the samples are pulse counts of which each begins where the one before ends."""
+    """Whether the samples are pulse counts, each of which begins where the one before ends."""
     assert session.sample_rate is not None
     return session.count_time is not None and abs(session.count_time * session.sample_rate - 1.0) < SAME_TIME
 
 
 def mean_errors(readings: Array, intervals: Intervals, response: Array | None = None) -> MeanErrors:
-    """Of the means of readings (R, m) of sensors of one kind; ``response`` (n, m, 2) as in `TiltResponse`.
+    """Errors of the means of readings (R, m) of sensors of one kind; ``response`` (n, m, 2) as in `TiltResponse`.
 
     NaN where every interval is a single sample.
     """
@@ -378,7 +381,7 @@ def mean_errors(readings: Array, intervals: Intervals, response: Array | None = 
 def errors_of_kinds(
     session: CalibrationSession, found: Callable[[list[int], Array | None], MeanErrors], response: Array | None
 ) -> MeanErrors:
-    """Of the means of all channels: those of the channels of every kind, by their numbers, are ``found`` together."""
+    """Errors of the means of all channels: ``found`` works out those of one kind together, given their numbers."""
     kinds = [s.kind for s in session.sensors]
     alike = {kind: [i for i, other in enumerate(kinds) if other == kind] for kind in sorted(set(kinds))}
     parts = [

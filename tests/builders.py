@@ -23,7 +23,7 @@ CONE_HALF_ANGLE = math.acos(1 / math.sqrt(3))
 
 @dataclass(frozen=True)
 class TrueSensor:
-    """What a sensor really is: u = scale·(a + bias + quadratic·a²), a = axis·n."""
+    """True parameters of a sensor: u = scale·(a + bias + quadratic·a²), a = axis·n."""
 
     name: str
     axis: tuple[float, float, float]
@@ -99,7 +99,7 @@ def declared(sensors: list[TrueSensor], unit: str, **common: Any) -> list[Docume
 
 
 def stand_rows(positions: int, runs: tuple[str, ...]) -> tuple[list[str], Array, Array]:
-    """Of R rows: run label, β (R,) in °, and whether flipped (R,)."""
+    """Run label, β (R,) in °, and whether flipped (R,), of R rows."""
     beta = np.tile(360.0 * np.arange(positions) / positions, len(runs))
     labels = [run for run in runs for _ in range(positions)]
     return labels, beta, np.array([label == "flipped" for label in labels])

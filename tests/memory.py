@@ -1,5 +1,6 @@
-"""Where tests write: into memory where the machine has enough of it. Databases that come and go by the hundred wait for
-the disk longer than their tests work."""
+"""Folder that tests write to: in memory where the machine has enough of it. Databases that come and go by the hundred
+wait for the disk longer than their tests work.
+"""
 
 import os
 import shutil

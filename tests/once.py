@@ -15,7 +15,7 @@ Result = TypeVar("Result")
 
 
 def once(function: Callable[Given, Result]) -> Callable[Given, Result]:
-    """The same function. Its result is shared, so that nobody may change it."""
+    """The function, worked out once for equal arguments. Its result is shared, so that nobody may change it."""
     known: dict[bytes, Result] = {}
 
     @wraps(function)
@@ -31,7 +31,7 @@ def once(function: Callable[Given, Result]) -> Callable[Given, Result]:
 
 
 def _held(part: object) -> Any:
-    """What has the same text where it is equal: arrays by their bits."""
+    """A value with equal text where the parts are equal: arrays by their bits."""
     if isinstance(part, np.ndarray):
         return part.dtype.str, part.shape, part.tobytes()
     if is_dataclass(part) and not isinstance(part, type):

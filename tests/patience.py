@@ -1,4 +1,4 @@
-"""How long tests wait. What a test waits for comes, or it never comes: how fast the machine is decides nothing."""
+"""Waiting in tests. An awaited event comes, or it never comes: the speed of the machine decides nothing."""
 
 from collections.abc import Callable
 from threading import Event
@@ -13,7 +13,7 @@ Found = TypeVar("Found")
 
 
 def until(look: Callable[[], Found | None]) -> Found:
-    """What a look gives as soon as it gives something."""
+    """Looks until there is a result, and returns it."""
     end, pause = monotonic() + LONG, Event()
     while not (found := look()):
         assert monotonic() < end, "it never came"

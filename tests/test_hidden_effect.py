@@ -80,7 +80,7 @@ class Service:
 def assert_found_and_modelled(
     service: Service, session: str, *, cause: str, sensors: list[str], amplitude: list[float], scope: str
 ) -> None:
-    """From a simulation that is wrong to one that is right, for an effect whose truth is known."""
+    """Asserts that a simulation that was wrong becomes right, for an effect whose truth is known."""
     assert not service.simulation_fits(session)
 
     diagnosis = service.get(f"/sessions/{session}/diagnosis")

@@ -34,20 +34,20 @@ SHORT = ("figure", "here", "target")
 
 @dataclass(frozen=True)
 class Sample:
-    """How much is drawn."""
+    """Numbers of histories and types that are drawn."""
 
     histories: int = 300
-    """Of every kind."""
+    """Histories of every kind."""
     types: int = 5
-    """Of every number of sessions, with due dates."""
+    """Types with due dates, for every number of sessions."""
     dated: int = 50
     """Types with stated dates: of a date only those that pass a tolerance tell."""
     compared: int = 1000
-    """Of every kind, beside the optimum: two parts in a hundred are told from chance."""
+    """Histories of every kind beside the optimum: two parts in a hundred are told from chance."""
 
     @property
     def smaller(self) -> "Sample":
-        """For the second generator."""
+        """A smaller sample, for the second generator."""
         return replace(
             self,
             histories=self.histories // 2,
@@ -151,7 +151,7 @@ def _described(world: World, rows: Sequence[Row]) -> list[str]:
 
 
 def _dates(world: World, due: Sequence[Due], reached: Sequence[Reached]) -> list[Row]:
-    """Of due dates and stated dates."""
+    """Rows on due dates and stated dates."""
     known = list(world.sessions)[1:]
     days = float(np.median([365 * d.due for d in due if d.kind == world.still and d.known in known]))
     late = of_kind(world, world.late, reached)

@@ -1,4 +1,6 @@
-"""Whether stated dates hold at any time of a unit's life, on three generators: benchmarks/results/health/dates.md."""
+"""Tests whether stated dates hold at any time of a unit's life, on three generators:
+benchmarks/results/health/dates.md.
+"""
 
 import argparse
 from collections.abc import Callable, Iterable, Iterator
@@ -33,7 +35,7 @@ DUE_HEAD = ("generator", "units that are not stable", "passed before due", "days
 HORIZONS = np.array([1.0, 2.0, 4.0, 8.0])
 """Years within which chances are held against what came."""
 BINS = (0.0, 0.05, 0.15, 0.35, 0.65, 0.85, 1.0)
-"""Of stated chances."""
+"""Bins of stated chances."""
 Random = np.random.Generator
 
 
@@ -43,11 +45,11 @@ class Source:
 
     name: str
     kinds: tuple[str, ...]
-    """Nothing moves in the first."""
+    """Kinds of histories; nothing moves in the first."""
     units: Callable[[list[tuple[str, ...]], Random], list[tuple[History, ...]]]
     """Parameters of units, each of a kind."""
     law: Law | None
-    """What somebody knows who knows the generator, where that is written down."""
+    """The generator's laws, for somebody who knows them; None where they are not written down."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +61,7 @@ class Statement:
     reach_90: float
     reach_50: float
     chances: Array
-    """(h,) that the tolerance is passed within `HORIZONS`, of one that is within it now."""
+    """(h,) chances that the tolerance is passed within `HORIZONS`, for a parameter that is within it now."""
     known: float | None
     """The chance that the tolerance is passed by the second date, by somebody who knows the generator; None where
     nobody does, or none is stated."""
@@ -68,7 +70,7 @@ class Statement:
 
 @dataclass(frozen=True)
 class Sample:
-    """How much is drawn of every generator."""
+    """Numbers drawn of every generator."""
 
     types: int = 8
     fleets: int = 1
@@ -113,7 +115,9 @@ def _until(histories: tuple[History, ...], n: int) -> tuple[History, ...]:
 
 
 def statements(source: Source, sample: Sample, rng: Random) -> list[Statement]:
-    """Of all parameters of types in which all kinds are alike; those out of tolerance already are left out."""
+    """The statements on all parameters of types in which all kinds are alike; those out of tolerance already are left
+    out.
+    """
     found = list[Statement]()
     for _ in range(sample.types):
         kinds = [tuple(source.kinds[(i + j) % len(source.kinds)] for j in range(PARAMETERS)) for i in range(MIXED)]
@@ -128,19 +132,21 @@ def statements(source: Source, sample: Sample, rng: Random) -> list[Statement]:
 
 
 def _within(chance: Array) -> Array:
-    """(h,) by `HORIZONS`, of chances at `AHEAD`, given that it is within its tolerance now."""
+    """(h,) chances by `HORIZONS`, from those at `AHEAD`, given that the parameter is within its tolerance now."""
     now = float(chance[0])
     return np.asarray((np.interp(HORIZONS, AHEAD, chance) - now) / max(1 - now, 1e-9))
 
 
 def _believed(one: History, law: Law, date: float, rng: Random) -> float | None:
-    """Of a date within the horizon, where the readings allow to be within the tolerance at all."""
+    """Chance of passing by a date, for somebody who knows the generator; None for a date beyond the horizon, or
+    readings that rule out a value within the tolerance.
+    """
     passages = known_passages(one, law, rng) if date < AHEAD[-1] else np.zeros(0)
     return float(np.mean(passages <= date)) if len(passages) else None
 
 
 def held(found: Iterable[Statement], date: Callable[[Statement], float]) -> Rate:
-    """How often the tolerance was passed by a date, where one within the horizon was stated."""
+    """Rate at which the tolerance was passed by a date, where one within the horizon was stated."""
     horizon = float(AHEAD[-1])
     return rate([one.passed <= date(one) for one in found if date(one) < horizon])
 
@@ -216,7 +222,7 @@ def _short(source: Source, found: list[Statement]) -> tuple[str, ...]:
 
 
 def _mean(chances: list[float]) -> str:
-    """With two standard errors."""
+    """The mean with two standard errors."""
     if len(chances) < 2:
         return "–"
     return f"{100 * np.mean(chances):.1f} ± {200 * np.std(chances, ddof=1) / np.sqrt(len(chances)):.1f} %"

@@ -1,4 +1,4 @@
-"""What is found, and how often by mistake: on whole histories, and beside the rules that are used instead."""
+"""Changes found and false alarms: on whole histories, and beside other rules in use."""
 
 from dataclasses import dataclass
 
@@ -19,7 +19,7 @@ from estimator.session import Array
 
 LEVEL = 0.05
 SINGLE = float(-np.expm1(np.log1p(-LEVEL) / PARAMETERS))
-"""Of one parameter, at 5 % over all of a unit."""
+"""Level for one parameter, at 5 % over all of a unit."""
 OURS, BEST, ODDS = "the likelihood of all changes (ours)", "the optimum", "the odds behind ours"
 TWO_SIDED = 1.96
 """Standard errors either way of an interval of 95 %."""
@@ -27,13 +27,13 @@ LEVELS = (0.01, 0.05, 0.2, 0.5, 0.8)
 
 
 def readings(one: History, tails: Array = NORMAL) -> Readings:
-    """As the estimator takes them, noise known; ``tails`` (4,) the chance of each law of errors."""
+    """The readings as the estimator takes them, noise known; ``tails`` (4,) the chance of each law of errors."""
     n = len(one.time)
     return Readings(one.time, one.value[:, None], one.sigma[:, None], np.ones((n, 1)), np.ones(1), tails)
 
 
 def p_value(one: History, tails: Array = NORMAL) -> float:
-    """Of the estimator, no walk expected."""
+    """The estimator's p-value, no walk expected."""
     n = len(one.time)
     return detect(readings(one, tails), 0.0, np.full(n, np.inf), np.full(n, np.nan), 0.0).p_value
 
@@ -44,7 +44,7 @@ def suspicion(one: History) -> float:
 
 
 def log_odds(one: History) -> float:
-    """Of any change against none, by the estimator: not yet made into a p-value of the history's own schedule."""
+    """The estimator's log odds of any change against none: not yet a p-value for the history's own schedule."""
     null = fits(readings(one), shapes(one.time), np.zeros(1))
     tells = (null.information[0] > 0).all(axis=0)
     return odds(mixture(null, one.time, tells), null.z[0]).total
@@ -56,13 +56,13 @@ def tails_of(world: World, rng: np.random.Generator) -> Array:
 
 
 def made(world: World, kind: str, of: tuple[int, Plan], rng: np.random.Generator) -> list[History]:
-    """So many histories of a kind, by a plan."""
+    """Histories of one kind: how many, and by what plan, is ``of``."""
     count, plan = of
     return [world.made(kind, plan, rng) for _ in range(count)]
 
 
 def found(kind: str, count: int, tails: Array, rng: np.random.Generator) -> list[bool]:
-    """Whether a change is found at 5 % over all parameters of its unit."""
+    """Whether a change is found in each history, at 5 % over all parameters of its unit."""
     return [p_value(one, tails) < SINGLE for one in made(FIRST, kind, (count, FIRST.plan), rng)]
 
 
@@ -97,13 +97,13 @@ def beside_page(world: World, count: int, rng: np.random.Generator) -> str:
 
 
 def _hits(rule: Rule, still: list[History], events: dict[str, list[History]]) -> dict[str, list[bool]]:
-    """Of every kind what a rule finds while it raises an alarm in 5 % of still histories."""
+    """Hits of a rule by kind, at a threshold where it raises an alarm in 5 % of still histories."""
     threshold = float(np.quantile(figures(rule, still), 1 - LEVEL))
     return {kind: [bool(x) for x in figures(rule, one) > threshold] for kind, one in events.items()}
 
 
 def _alone(still: list[History], events: dict[str, list[History]]) -> list[list[bool]]:
-    """Of every kind what is found by its own likelihood ratio."""
+    """Hits of every kind by its own likelihood ratio."""
     nothing, hits = [log_ratios(one) for one in still], []
     for kind, histories in events.items():
         threshold = float(np.quantile([ratios[kind] for ratios in nothing], 1 - LEVEL))
@@ -113,14 +113,14 @@ def _alone(still: list[History], events: dict[str, list[History]]) -> list[list[
 
 @dataclass(frozen=True)
 class Compared:
-    """Of one kind of change: what the estimator finds, its odds and the optimum, at equal false alarms."""
+    """Hits of the estimator, of its odds and of the optimum for one kind of change, at equal false alarms."""
 
     ours: list[bool]
     odds: list[bool]
     optimum: list[bool]
 
     def __str__(self) -> str:
-        """Less than the optimum finds, in the same histories."""
+        """The three rates, and by how much the estimator's falls short of the optimum's, with its 95 % interval."""
         less = np.array(self.optimum, dtype=float) - np.array(self.ours, dtype=float)
         sigma = float(less.std()) / np.sqrt(len(less))
         found = (f"{100 * np.mean(every):.1f} %" for every in (self.ours, self.odds, self.optimum))

@@ -1,4 +1,4 @@
-"""Whether units come back in time and not too early, and whether stated dates hold, in types of many sizes."""
+"""Tests whether units come back in time and not too early, and whether stated dates hold, in types of many sizes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -45,18 +45,18 @@ class Reached:
 
     kind: str
     early: tuple[float, ...]
-    """By the estimator, and by its rivals; in the back-test given the generator's laws."""
+    """Dates by the estimator and by its rivals; in the back-test, given the generator's laws."""
     passed: float
     is_found: bool
     """Whether a change was found in it."""
     since: int
     """Sessions from the onset of what it does on; all where it does so from the start."""
     is_more: bool
-    """Whether it is of those that were added of one kind."""
+    """Whether it is one of the histories added of a single kind."""
 
 
 def dues(world: World, types: int, rng: np.random.Generator) -> list[Due]:
-    """Of types of twenty units, so many for every number of sessions; units that are out already are left out."""
+    """Due dates of types of twenty units, so many for every number of sessions; units already out are left out."""
     rows = []
     for name, sessions in world.sessions.items():
         for _ in range(types):
@@ -75,8 +75,9 @@ def due_of(one: Unit, prior: Prior) -> float:
 
 
 def dates_reached(world: World, types: int, rng: np.random.Generator) -> list[Reached]:
-    """Of types in whose parameters all kinds are alike, and may begin any day: three units of each kind, and of the
-    drift that begins some day as many more as tell of it, begun two sessions back or more."""
+    """Stated dates of types whose parameters are of all kinds alike, with onsets on any day: three units of each kind,
+    and more of the drift that begins some day, for its statistics, begun two sessions back or more.
+    """
     found, late = list[Reached](), world.planned(DATED, since=SINCE)
     for _ in range(types):
         units = [mixed(world, i, rng) for i in range(3 * len(world.kinds))]
@@ -103,18 +104,18 @@ def _reached(one: History, world: World, of: tuple[Prior, bool], rng: np.random.
 
 
 def before(found: Sequence[Reached], whose: int = 0) -> Rate:
-    """How often the tolerance was passed before the date, where one within the horizon was stated."""
+    """Rate at which the tolerance was passed before the date, where one within the horizon was stated."""
     horizon = float(AHEAD[-1])
     return rate([one.passed < one.early[whose] for one in found if one.early[whose] < horizon])
 
 
 def of_mix(found: Sequence[Reached]) -> list[Reached]:
-    """Those of the types as they are."""
+    """The dates of the types as they are."""
     return [one for one in found if not one.is_more]
 
 
 def of_kind(world: World, kind: str, found: Sequence[Reached]) -> list[Reached]:
-    """Those of one kind whose onset lies two sessions back or more."""
+    """The dates of one kind whose onset lies two sessions back or more."""
     return [one for one in found if one.kind == kind and one.since >= SINCE and one.is_more == (kind == world.late)]
 
 

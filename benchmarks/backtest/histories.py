@@ -13,7 +13,7 @@ from estimator.session import Array
 STEP = 0.02
 """Years between points of a truth."""
 YEARS = 20.0
-"""Of a truth: the longest history and what comes after."""
+"""Length of a truth: the longest history and the time after it."""
 DESCRIBED = {
     "stable": "nothing moves",
     "step": "0.4 to 1.2 T, once, between two sessions or at a service that nobody recorded",
@@ -52,7 +52,7 @@ class History:
 
 @dataclass(frozen=True)
 class Plan:
-    """When a unit is measured, and how well."""
+    """Schedule and accuracy of a unit's sessions."""
 
     sessions: tuple[int, int] = (6, 16)
     """Fewest and most."""
@@ -61,7 +61,7 @@ class Plan:
     since: int = 0
     """Sessions, at least, from the onset of a change on; 0 where it may come any time."""
     freedom: float = np.inf
-    """Of Student's law of an error, with the standard deviation that is stated; infinite of a normal one."""
+    """Degrees of freedom of Student's law of an error, of the stated standard deviation; infinite for a normal one."""
 
 
 def dates(plan: Plan, rng: np.random.Generator) -> Array:
@@ -88,7 +88,7 @@ def history(kind: str, time: Array, plan: Plan, rng: np.random.Generator) -> His
 
 
 def errors(freedom: float, count: int, rng: np.random.Generator) -> Array:
-    """(count,) in standard deviations."""
+    """(count,) errors in standard deviations."""
     if np.isinf(freedom):
         return rng.standard_normal(count)
     return rng.standard_t(freedom, count) * np.sqrt((freedom - 2) / freedom)

@@ -16,9 +16,9 @@ from benchmarks.backtest.histories import STEP, YEARS, History
 from estimator.session import Array
 
 DRAWS, FOLLOWED = 2000, 2000
-"""Of each kind, and of all together those that are followed into the future: a chance of 10 % to within 1 %."""
+"""Draws of each kind, and draws of all kinds that are followed into the future: a chance of 10 % to within 1 %."""
 WIDE, TAILS = 1.5, 5.0
-"""Of the law that sizes are drawn from: wider than the least squares say, with heavy tails."""
+"""Widening of the law that sizes are drawn from, relative to least squares, and its degrees of freedom."""
 Random = np.random.Generator
 Course = Callable[[Array], Array]
 """(N, t) courses of N draws per unit of size, at times (t,), years."""
@@ -33,7 +33,7 @@ class Sized:
     log_prior: Callable[[Array], Array]
     """Log density of sizes (N,) of either sign."""
     courses: Callable[[int, Random], Course]
-    """So many, with times and constants from their prior."""
+    """Draws so many courses, with times and constants from their prior."""
 
 
 @dataclass(frozen=True)
@@ -45,12 +45,12 @@ class Law:
     log_error: Callable[[Array], Array]
     """Log density of errors in standard deviations."""
     errors: Callable[[int, Random], Array]
-    """So many of them."""
+    """Draws so many errors."""
     wanders: str
     scales: tuple[float, float]
     """Least and largest of what wanders, T a root year."""
     steps: Callable[[Array, int, Random], Array]
-    """What such scales, in any shape, add within so many `STEP`."""
+    """Draws the steps that such scales, in any shape, add within so many `STEP`."""
     seasonal: str
     slopes: tuple[float, float]
     """T per °C, of either sign."""
@@ -67,7 +67,7 @@ class _Kind:
     log_weight: Array
     """(N,) prior times likelihood over the density that was drawn from; their mean is the kind's evidence."""
     future: Callable[[Array], Array]
-    """Of places (m,), the deviations (m, t) at all dates from the last session on, T."""
+    """The deviations (m, t), T, of the draws at places (m,), at all dates from the last session on."""
 
 
 def early(one: History, law: Law, level: float, rng: Random) -> float:
@@ -76,7 +76,7 @@ def early(one: History, law: Law, level: float, rng: Random) -> float:
 
 
 def known_dates(one: History, law: Law, levels: tuple[float, ...], rng: Random) -> tuple[float, ...]:
-    """The same for several chances, given that it is within its tolerance now."""
+    """Dates for several chances, as `early`, given that the parameter is within its tolerance now."""
     inside = known_passages(one, law, rng)
     if not len(inside):
         return tuple(float("inf") for _ in levels)
@@ -112,7 +112,7 @@ def _drawn(kind: str, one: History, law: Law, days: Array, rng: Random) -> _Kind
 
 
 def _signs(one: History) -> Array:
-    """(n,) of e₀ in every reading: the reference's own, and taken off all others."""
+    """(n,) sign of e₀ in every reading: plus in the reference itself, minus in all others."""
     return np.append(1.0, np.full(len(one.time) - 1, -1.0))
 
 
@@ -141,7 +141,7 @@ def _unsized(one: History, law: Law, moved: Array, ahead: Callable[[Array], Arra
 
 
 def _log_likelihood(one: History, law: Law, moved: Array, origin: Array) -> Array:
-    """(N,) of what moved by (N, n) since the reference, whose error is ``origin`` (N,), T."""
+    """(N,) log likelihood of readings that moved by (N, n) since the reference, whose error is ``origin`` (N,), T."""
     errors = np.column_stack([origin, one.value[1:] - moved[:, 1:] + origin[:, None]])
     return np.asarray((law.log_error(errors / one.sigma) - np.log(one.sigma)).sum(axis=1))
 
@@ -161,7 +161,7 @@ def _weathered(one: History, law: Law, days: Array, rng: Random) -> _Kind:
 
 
 def _wandering(one: History, law: Law, days: Array, rng: Random) -> _Kind:
-    """From session to session; its evidence is that of the later readings given e₀."""
+    """Draws of a parameter that wanders between sessions; its evidence is that of the later readings given e₀."""
     scale, log = rng.uniform(*law.scales, DRAWS), 0.0
     value = -one.sigma[0] * law.errors(DRAWS, rng)
     for i, steps in enumerate(np.round(np.diff(one.time) / STEP).astype(int), start=1):

@@ -17,7 +17,7 @@ def _uniform(low: float, high: float) -> Callable[[Array], Array]:
 
 
 def _log_normal(median: float) -> Callable[[Array], Array]:
-    """The same, of the second generator."""
+    """Log density of log-normal sizes of either sign, of the second generator."""
     return lambda size: np.asarray(stats.lognorm.logpdf(np.abs(size), 0.5, scale=median) - np.log(2))
 
 

@@ -37,7 +37,7 @@ def log_ratios(history: History) -> dict[str, float]:
 
 
 def optimum(history: History) -> float:
-    """Of all of them in equal shares."""
+    """Log likelihood ratio of all of them in equal shares."""
     return float(np.logaddexp.reduce(list(log_ratios(history).values())))
 
 
@@ -88,7 +88,7 @@ def cusum(history: History) -> float:
 
 
 def change_point(history: History) -> float:
-    """What one change of the mean, placed by `ruptures` (dynamic programming, squared error), takes off the cost."""
+    """Cost saved by one change of the mean, placed by `ruptures` (dynamic programming, squared error)."""
     x = (history.value / history.sigma)[:, None]
     search = ruptures.Dynp(model="l2", min_size=1, jump=1).fit(x)
     place = search.predict(n_bkps=1)[0]

@@ -12,7 +12,7 @@ from estimator.health.prognosis import Prognosis, Track, evidence, prognosis
 from estimator.session import Array
 
 PARAMETERS = 6
-"""Of a unit: the biases of six sensors."""
+"""Parameters of a unit: the biases of six sensors."""
 NOW = np.zeros(1)
 """No fan is looked at."""
 
@@ -38,15 +38,15 @@ def unit(world: World, kind: str, plan: Plan, rng: np.random.Generator) -> Unit:
 
 
 def track(one: History) -> Track:
-    """What the outlook is made of."""
+    """The track that the outlook is made from."""
     return Track(one.time, one.value[:, None], one.sigma[:, None], 1.0, temperature=one.temperature)
 
 
 def learned(units: Sequence[Unit]) -> Prior:
-    """From all parameters of all units."""
+    """The prior learned from all parameters of all units."""
     return learn([evidence(track(one)) for unit in units for one in unit.parameters])
 
 
 def outlook(one: Unit, prior: Prior, ahead: Array = NOW) -> Prognosis:
-    """Of one unit."""
+    """The outlook of one unit."""
     return prognosis([track(p) for p in one.parameters], [prior] * len(one.parameters), ahead)

@@ -24,7 +24,7 @@ class Followed:
 
 
 def followed(kind: str, count: int, rng: np.random.Generator) -> list[Followed]:
-    """In histories of a kind."""
+    """Draws histories of a kind and follows each."""
     return [_followed(history(kind, dates(SEASONS, rng), SEASONS, rng)) for _ in range(count)]
 
 

@@ -47,7 +47,7 @@ def ours(history: History) -> Array:
 
 
 def first(history: History, k: int) -> History:
-    """Its first k sessions."""
+    """The first k sessions of the history."""
     parts = (history.time[:k], history.value[:k], history.sigma[:k], history.temperature[:k])
     return History(history.kind, history.truth, history.onset, *parts)
 
@@ -109,7 +109,7 @@ RULES: dict[str, Watch] = {
 
 
 def threshold(figures: Sequence[Array], sound: Sequence[History]) -> float:
-    """At which sound histories raise `ALARMS` a year, each watched until its first."""
+    """The threshold at which sound histories raise `ALARMS` a year, each watched until its first."""
     levels = np.unique(np.concatenate([np.maximum.accumulate(one) for one in figures]))
     low, high = 0, len(levels) - 1
     while low < high:
@@ -173,7 +173,7 @@ def page(sound_count: int, count: int, seed: int) -> str:
 
 
 def heading(sound: Sequence[History], count: int, seed: int) -> str:
-    """What was watched, and how."""
+    """The heading of the page, with the histories that were watched."""
     years = sum(one.time[-1] for one in sound)
     return (
         "# Detection, session by session\n\n"

@@ -23,7 +23,7 @@ BEND = 0.25
 SHOCKS = 6.0
 """A year, of one that wanders."""
 HEATED = 1 / 3
-"""Of the year in which the laboratory is kept warm; without heating it follows the weather."""
+"""Part of the year in which the laboratory is kept warm; without heating it follows the weather."""
 DESCRIBED = {
     "still": "nothing moves",
     "shock": "log-normal about 0.5 T, once, at a time of exponential law",

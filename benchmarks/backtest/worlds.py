@@ -20,19 +20,19 @@ class World:
     """A generator."""
 
     described: Mapping[str, str]
-    """What every kind does; nothing moves in the first."""
+    """Description of every kind; nothing moves in the first."""
     late: str
     """Kind of a drift that begins some day."""
     plan: Plan
-    """Of histories in which changes are looked for; a change may show in the last session alone."""
+    """Plan of histories in which changes are looked for; a change may show in the last session alone."""
     long: Plan
-    """The same of long histories."""
+    """Plan of long histories in which changes are looked for."""
     sessions: Mapping[str, tuple[int, int]]
     """Fewest and most, of units whose due date is looked at."""
     dates: Callable[[Plan, np.random.Generator], Array]
     history: Callable[[str, Array, Plan, np.random.Generator], History]
     law: Law
-    """What somebody knows who knows the generator."""
+    """The generator's laws, for somebody who knows them."""
 
     @property
     def kinds(self) -> tuple[str, ...]:
@@ -41,7 +41,7 @@ class World:
 
     @property
     def still(self) -> str:
-        """In which nothing moves."""
+        """The kind in which nothing moves."""
         return self.kinds[0]
 
     @property

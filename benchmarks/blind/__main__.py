@@ -55,7 +55,7 @@ def counted(items: Iterable[T], total: int) -> list[T]:
 
 
 def answer(options: argparse.Namespace) -> None:
-    """Of every session, by everybody who is named."""
+    """Writes the answers of every named entrant to every session."""
     folder, names, out = options.folder, options.by, options.out
     rivals = [name for name in names if name != OURS]
     if rivals and options.sound is None:
@@ -74,7 +74,7 @@ def answer(options: argparse.Namespace) -> None:
 
 
 def answers_by(name: str, options: argparse.Namespace, looked: list[Look], sound: list[Look]) -> list[Look]:
-    """In the order of the sessions."""
+    """The answers of one entrant, in the order of the sessions."""
     if name == OURS:
         return [look[name] for look in looked]
     acting: list[list[str]] = [[] for _ in looked]

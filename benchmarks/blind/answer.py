@@ -21,11 +21,11 @@ from estimator import diagnose
 ALARMS = 0.01
 """Share of sound sessions in which a rival names something."""
 Look = dict[str, Any]
-"""Of one session by name of the entrant: an answer, or ``record`` (findings) and ``claims``."""
+"""Answers to one session by name of the entrant: an answer, or ``record`` (findings) and ``claims``."""
 
 
 def looks(folder: Path, names: Sequence[str], parts: Path, processes: int) -> Iterator[Look]:
-    """What each entrant makes of every session, in their order; those in ``parts`` already are read."""
+    """The look of each entrant at every session, in order; those in ``parts`` already are read."""
     done = [json.loads(line) for line in parts.read_text("utf-8").splitlines()] if parts.exists() else []
     if any(set(look) != set(names) for look in done):
         raise ValueError(f"{parts} is of a run by others: remove it, or name them")
@@ -73,14 +73,16 @@ def claimed(given: Given, entrant: Entrant) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Threshold:
-    """Above which a rival's claims are its answer."""
+    """The threshold above which a rival's claims are its answer."""
 
     entrant: Entrant
     level: float
 
     @classmethod
     def of(cls, name: str, sound: Sequence[Look]) -> "Threshold":
-        """That `ALARMS` of sound sessions pass; of a rival that is given the cause, of all causes in all of them."""
+        """The threshold that `ALARMS` of sound sessions pass; for a rival that is given the cause, over all causes in
+        all of them.
+        """
         entrant = ENTRANTS[name]
         values = [[claim[0] for claim in look[name]["claims"]] for look in sound]
         each = (

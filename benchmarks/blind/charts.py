@@ -34,7 +34,7 @@ def charted(given: Given, chart: Chart) -> list[Claim]:
 
 
 def suspicion(life: tuple[SensorCalibration, ...], chart: Chart) -> float:
-    """Of one sensor through its sessions, oldest first, the chart's largest figure at the newest."""
+    """The chart's largest figure at the newest session, for one sensor through its sessions, oldest first."""
     values, sigmas = (np.array(x) for x in zip(*(parameters(s, life[-1]) for s in life), strict=True))
     known = np.flatnonzero(np.isfinite(values + sigmas).all(axis=0))
     time = np.arange(len(life), dtype=float)

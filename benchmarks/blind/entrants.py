@@ -1,4 +1,4 @@
-"""Who answers: the diagnosis, its rivals, and two limits that know more than the folder says."""
+"""The entrants: the diagnosis, its rivals, and two limits that know more than the folder says."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ class Entrant:
     method: Callable[[Given], list[Claim]]
     """Claims, the surest name first; a session that it cannot judge has none."""
     puts_right: bool = True
-    """Whether the diagnosis's first step, which puts the record right, goes before it and is part of its answer."""
+    """Whether the diagnosis's first step, which corrects the record, comes first and is part of the answer."""
     is_given_cause: bool = False
     """Whether it is given the cause that acts."""
 

@@ -27,7 +27,7 @@ SAME = 1e-9
 
 @dataclass(frozen=True)
 class Secret:
-    """What all truths follow from."""
+    """The secret that all truths follow from."""
 
     seed: int
     sessions: int
@@ -36,13 +36,13 @@ class Secret:
 
     @property
     def content(self) -> bytes:
-        """Of its file."""
+        """Content of its file."""
         document = {"format": SECRET, "seed": f"{self.seed:x}", "sessions": self.sessions}
         return json.dumps(document | ({"sound": True} if self.sound else {})).encode()
 
     @property
     def commitment(self) -> str:
-        """What is published of it."""
+        """The published commitment to it."""
         return sha256(self.content).hexdigest()
 
     def cases(self) -> Iterator[tuple[str, Case]]:
@@ -87,7 +87,7 @@ def files_of(case: Case) -> Iterator[tuple[str, dict[str, Any]]]:
 
 
 def numbers(folder: Path) -> list[str]:
-    """Of the sessions in a folder."""
+    """Numbers of the sessions in a folder."""
     return sorted(path.parent.name for path in folder.glob(f"*/{SESSION}"))
 
 
@@ -111,18 +111,18 @@ def _same(one: Any, other: Any) -> bool:
 
 @dataclass(frozen=True)
 class Answers:
-    """What somebody says of every session."""
+    """Answers of one entrant to every session."""
 
     by: str
     answers: dict[str, dict[str, Any]]
-    """By number: ``findings`` and ``unexplained`` as in imu-diagnosis/1."""
+    """Answers by number: ``findings`` and ``unexplained`` as in imu-diagnosis/1."""
 
     def write(self, file: Path) -> None:
-        """To a file."""
+        """Writes the answers to a file."""
         file.write_text(json.dumps({"format": "imu-blind-answers/1", **asdict(self)}), "utf-8")
 
 
 def read_answers(file: Path) -> Answers:
-    """From a file."""
+    """Reads answers from a file."""
     document = json.loads(file.read_text("utf-8"))
     return Answers(document["by"], document["answers"])

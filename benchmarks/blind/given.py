@@ -1,4 +1,4 @@
-"""One session as the folder gives it, and what a method claims of it."""
+"""One session as the folder gives it, and the claims of a method about it."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from estimator.diagnosis.results import Finding
 from estimator.diagnosis.selection.search_state import SearchState
 
 SAID = ("cause", "sensors", "amplitude", "sigma", "alternatives")
-"""What an answer holds of a finding."""
+"""Fields of a finding that an answer holds."""
 
 
 class Claim(NamedTuple):
@@ -26,7 +26,7 @@ class Claim(NamedTuple):
     statistic: float
     """The larger, the surer; on a scale of the method's own."""
     finding: dict[str, Any] | None
-    """As an answer holds it; None: structure that no cause explains."""
+    """The finding as an answer holds it; None: structure that no cause explains."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,12 +38,12 @@ class Given:
 
     @classmethod
     def of(cls, own: Path) -> "Given":
-        """From its folder."""
+        """Reads the session from its folder."""
         return cls(read_session(own / SESSION), tuple(read_session(h) for h in sorted(own.glob("history-*.json"))))
 
     @cached_property
     def right(self) -> PutRight:
-        """With its record put right."""
+        """The session with its record corrected."""
         return put_right(self.session, self.history, CATALOGUE)
 
     @cached_property
@@ -60,7 +60,7 @@ class Given:
         return initial_state(baseline, self.right.earlier, CATALOGUE)
 
     def of_record(self) -> Iterator[Finding]:
-        """What was put right."""
+        """Findings about the record, which was corrected."""
         yield from clip_findings(self.right.clips, self.right.rows, self.state.baseline, calibrate(self.right.rows))
         yield from (record_error_finding(error, self.right.rows) for error in self.right.errors)
         if self.entry is not None:

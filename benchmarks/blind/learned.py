@@ -5,11 +5,11 @@ from benchmarks.details import PROJECT
 from benchmarks.study.neural.network import answer
 
 NETWORK = PROJECT / "build" / "neural.npz"
-"""Where ``python -m benchmarks.study.neural`` writes its weights."""
+"""File to which ``python -m benchmarks.study.neural`` writes the network's weights."""
 
 
 def neural(given: Given) -> list[Claim]:
-    """Its likeliest cause."""
+    """The network's likeliest cause, as the only claim."""
     found = answer(NETWORK, given.state.residuals)
     sensors = [] if found.sensor is None else [given.state.names[found.sensor]]
     return [Claim(found.log_odds, {"cause": found.cause, "sensors": sensors})]

@@ -28,13 +28,13 @@ def sparse(given: Given) -> list[Claim]:
 
 
 def _terms(traces: Traces) -> Iterator[tuple[str, int]]:
-    """Of every column, shape by shape: the cause and its sensor, −1 for none."""
+    """The cause and its sensor, −1 for none, of every column, shape by shape."""
     for sensor in traces.sensor:
         yield from [(traces.cause.identifier, int(sensor))] * traces.columns.shape[-1]
 
 
 def kept_terms(library: Array, z: Array) -> Iterator[tuple[float, Array]]:
-    """Of every threshold which columns of a library (n, k) stay, the strongest first; standard errors."""
+    """The columns of a library (n, k) that remain at every threshold, the strongest first; standard errors."""
     norms = np.linalg.norm(library, axis=0)
     seen = np.flatnonzero(norms > 0)
     unit = library[:, seen] / norms[seen]

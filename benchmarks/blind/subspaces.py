@@ -45,7 +45,7 @@ Choice = Callable[[SearchState], tuple[Claim, Scored | None] | None]
 
 
 def matched(given: Given) -> list[Claim]:
-    """Of the whole catalogue."""
+    """Matched subspaces of the whole catalogue."""
     return list(_in_turn(given.state, _best_matched))
 
 
@@ -57,7 +57,7 @@ def one_step(given: Given) -> list[Claim]:
 
 
 def chi_square(given: Given) -> list[Claim]:
-    """Of the residuals of the session as filed: no signature is looked for."""
+    """χ² of the residuals of the session as filed: no signature is looked for."""
     return [Claim(energy(begin(baseline_of(given.right.rows), (), [], [])), None)]
 
 
@@ -152,7 +152,7 @@ def _likeliest(state: SearchState) -> tuple[Claim, Scored | None] | None:
 
 
 def _weighed(state: SearchState, seen: Scores) -> dict[Group, tuple[float, int | None]]:
-    """Of every cause on its sensors: ln Λ, averaged over strengths and places, and the likeliest shape."""
+    """ln Λ of every cause on its sensors, averaged over strengths and places, and the likeliest shape."""
     each = np.stack([log_likelihood_ratio(seen.statistic, seen.freedom, s) for s in STRENGTHS])
     ratio, counted = logsumexp(each, axis=0, b=OF_STRENGTH[:, None]), places(state)
     members: dict[Group, list[int]] = {}

@@ -1,4 +1,4 @@
-"""What a converter is: a public format of raw recordings → session files, with nothing judged on the way."""
+"""The interface of a converter: from a public format of raw recordings to session files, without judging anything."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -15,8 +15,8 @@ class Converter:
 
     name: str
     description: str
-    """What the recording is, in one sentence."""
+    """The recording in one sentence."""
     files: str
-    """Which files to name on the command line."""
+    """Files to name on the command line."""
     convert: Callable[[list[Path]], list[tuple[str, Document]]]
     """Files → suggested file name (without folder) and session, one or more."""

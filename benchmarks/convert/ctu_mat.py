@@ -12,7 +12,7 @@ from estimator.applied_vector import STANDARD_GRAVITY
 from service.ingest.apart import read_apart
 
 BYTE_ORDER = slice(126, 128)
-"""Where the header of a MAT file says how its bytes run."""
+"""Bytes of a MAT file's header that state its byte order."""
 FILES = "the MAT file that holds `ACC_meas`, three rows of orientation means in g"
 
 

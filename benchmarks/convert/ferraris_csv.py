@@ -16,13 +16,13 @@ from benchmarks.convert.files import expect_count, read_bytes, refuse
 GRAVITY = 9.81
 """m/s², as the publication states it."""
 RATE_HZ = 204.8
-"""As the data set states it."""
+"""Sample rate stated by the data set."""
 COUNTS = 2048 / GRAVITY
 """Counts per m/s²: 2048 per g, as the data set states."""
 GYRO_COUNTS = 16.4 * PER_DEGREE
 """Counts per rad/s: 16.4 per degree per second, as the data set states."""
 DIRECTION_SIGMA_DEG = 1.0
-"""How well a box is set down on its faces by hand."""
+"""Error with which a box is set down on its faces by hand."""
 PARTS = ("x_p", "x_a", "y_p", "y_a", "z_p", "z_a")
 READINGS = ("acc_x", "acc_y", "acc_z", "gyr_x", "gyr_y", "gyr_z")
 FILES = "the annotated session, a CSV file with the columns part, samples, acc_x … gyr_z"

@@ -37,8 +37,10 @@ RATE_HZ = 62.5
 NUMBERS = 65536
 """Packet numbers before they begin anew, every 17.5 minutes."""
 TURNS = {"exp_1": 0, "exp_2": 0, "exp_3": 1, "exp_4": 2, "exp_6": 0, "exp_9": 1}
-"""How often they had begun anew before the published sessions, as those before tell. Numbers run on from session to
-session, so the first one is the time that the board has streamed since it was switched on; pauses are not counted."""
+"""Number of times that packet numbers had begun anew before the published sessions, by the sessions before. Numbers run
+on from session to session, so the first one is the time that the board has streamed since it was switched on; pauses
+are not counted.
+"""
 COUNTS = 2048 / STANDARD_GRAVITY
 """Counts per m/s²: 2048 per g."""
 GYRO_COUNTS = 16.4 * PER_DEGREE

@@ -22,7 +22,7 @@ from estimator.static import average
 GRAVITY = 9.81
 """m/s², as the publication states it."""
 RATE_HZ = 100.0
-"""As the data set states it."""
+"""Sample rate stated by the data set."""
 APART_S = 1.5
 """Largest difference of the middles of one standstill in two logs."""
 FEWEST = 9

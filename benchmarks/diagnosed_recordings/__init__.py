@@ -1,1 +1,1 @@
-"""What the simulation gets wrong on real recordings: a page and pictures a recording, made by one command."""
+"""Diagnoses of real recordings: a page with pictures for each recording, made by one command."""

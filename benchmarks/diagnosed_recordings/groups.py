@@ -20,10 +20,10 @@ class Group:
 
     recording: str
     words: str
-    """Which sensors."""
+    """Description of the sensors."""
     means: CalibrationSession
     log: CalibrationSession | None = None
-    """The same sensors before averaging; None where the recording begins with means."""
+    """The sensors' log before averaging; None where the recording begins with means."""
 
 
 def some(session: CalibrationSession, names: list[str]) -> CalibrationSession:

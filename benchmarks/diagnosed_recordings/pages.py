@@ -11,10 +11,10 @@ from benchmarks.diagnosed_recordings.words import section, summary, table
 LEGEND = """A cell is *the same* as × 1 (probabilities within 2 %), or bold. *Stated noise* is the factor by which the
 answer calls the stated errors of accelerometers (A) or gyros (G) too small, *right* where it believes them; a slash
 separates the three factors. A log states no errors, so it has one answer. Inputs without any name are left out."""
-"""How the table of stated errors reads."""
+"""Legend of the table of stated errors."""
 COMMAND = "python -m benchmarks.diagnosed_recordings"
 PHYSICS = Path(__file__).parent / "physics"
-"""What is argued of each recording, written by hand; the figures on the page are made by the command."""
+"""Folder of the arguments about each recording, written by hand; the figures on the page are made by the command."""
 STATED = "stated-errors"
 """The page that asks whether an answer depends on what the errors are stated as."""
 INDEX = f"""# Real recordings: what the simulation gets wrong

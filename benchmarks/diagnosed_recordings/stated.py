@@ -13,8 +13,9 @@ from estimator.errors import ScheduleError
 from estimator.session import CalibrationSession
 
 FACTORS = {"⅓": 1 / 3, "1": 1.0, "3": 3.0}
-"""By which the stated errors are multiplied: what an honest person gets wrong who forgets that noise hangs together, or
-allows for too much."""
+"""Factors on the stated errors, as an honest person is wrong who forgets that noise is correlated, or allows for too
+much.
+"""
 
 ALIKE = 0.02
 """Probabilities nearer than this are the same: rounding of a fit that starts from other weights."""
@@ -24,7 +25,7 @@ HEAD = ("recording", "sensors", "input", "× ⅓", "× 1", "× 3", "stated noise
 
 @dataclass(frozen=True)
 class Answer:
-    """What is said of one input."""
+    """The answer to one input."""
 
     names: tuple[tuple[str, frozenset[str]], ...]
     """Causes with their sensors, in alphabetical order."""
@@ -54,7 +55,7 @@ def answer(diagnosis: Diagnosis) -> Answer:
 
 
 def probability(finding: Finding) -> float:
-    """Of the named cause in its own ranking; 1 where it has no rivals."""
+    """Probability of the named cause in its own ranking; 1 where it has no rivals."""
     return next((r.probability for r in finding.ranking if r.cause == finding.cause), 1.0)
 
 
@@ -72,7 +73,7 @@ def line(group: Group, words: str, sessions: Iterable[CalibrationSession]) -> tu
 
 
 def each(said: list[str]) -> str:
-    """What is said at every factor; once where it is the same."""
+    """The answer at every factor; once where it is the same."""
     return said[0] if len(set(said)) == 1 else " / ".join(said)
 
 

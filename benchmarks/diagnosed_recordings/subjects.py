@@ -33,7 +33,7 @@ def sessions(format_name: str) -> list[Subject]:
 
 
 TRIADS = 8
-"""On the sensor array's board."""
+"""Number of triads on the sensor array's board."""
 
 
 def array_sessions() -> list[Subject]:

@@ -41,7 +41,7 @@ def spoken(names: Sequence[str]) -> str:
 
 
 def doubt(finding: Finding) -> str:
-    """Which causes fit as well."""
+    """The causes that fit as well, in words."""
     return f", or {', '.join(finding.alternatives[:3])}" if finding.alternatives else ""
 
 
@@ -56,7 +56,7 @@ def amplitudes(finding: Finding) -> Iterator[tuple[str, ...]]:
 
 
 def evidence(finding: Finding) -> str:
-    """How sure it is."""
+    """The certainty of a finding, in words."""
     shape = ", ".join(f"{number(v)} {unit}" for unit, v in finding.nonlinear.items())
     fits = f" Fits as well: {', '.join(finding.alternatives)}." if finding.alternatives else ""
     where = f" ({shape}, of {finding.sensors[0]})" if shape and finding.sensors else ""
@@ -74,13 +74,13 @@ def finding_section(finding: Finding) -> str:
 
 
 def unexplained(diagnosis: Diagnosis) -> str:
-    """Where structure without a name lives."""
+    """The place of structure without a name, in words."""
     lines = [f"* {spoken(s.sensors)}: {s.where}, strength {float(s.strength):.1f}" for s in diagnosis.structures]
     return "Unexplained:\n\n" + "\n".join(lines) if lines else ""
 
 
 def misjudged(diagnosis: Diagnosis) -> str:
-    """Which stated errors the readings contradict."""
+    """The stated errors that the readings contradict, in words."""
     return " ".join(
         f"The stated standard errors of the {n.kind}s would have to be multiplied by {n.factor:.2g}."
         for n in diagnosis.noise
@@ -98,7 +98,7 @@ def gain_table(gain: Gain) -> str:
 
 
 def section(diagnosis: Diagnosis) -> str:
-    """Everything that is said of one session, without its picture."""
+    """The words on one session, without its picture."""
     parts = [*(finding_section(f) for f in diagnosis.findings), unexplained(diagnosis), misjudged(diagnosis)]
     said = [p for p in parts if p] or [NOTHING]
     return "\n\n".join([*said, gain_table(diagnosis.gain)])

@@ -63,7 +63,7 @@ def as_json() -> bytes:
 
 
 def as_csv() -> bytes:
-    """The same as CSV."""
+    """The log as CSV."""
     head, columns = log(CELLS, 7, "CSV-1")
     table = pl.DataFrame(columns).write_csv()
     return csv(table).replace(b"# " + csv("")[2 : csv("").index(b"\n")], b"# " + json.dumps(head).encode(), 1)

@@ -17,7 +17,7 @@ import polars as pl
 from scipy.io import savemat
 
 ENDLESS = Path(__file__).parents[2] / "tests" / "service" / "ingest" / "endless.h5"
-"""Whose damaged tree the library follows for ever."""
+"""File with a damaged tree that the library follows for ever."""
 HEAD = {
     "format": "imu-session/1",
     "unit": "HOSTILE-1",
@@ -27,7 +27,7 @@ HEAD = {
     "sample_rate_hz": 100.0,
     "sensors": [{"name": "A1", "nominal_axis": [1, 0, 0], "nominal_scale": 1.0, "reading_unit": "V"}],
 }
-"""Of a session whose table is what does harm."""
+"""Metadata of a session whose table does the harm."""
 
 
 @dataclass(frozen=True)

@@ -16,14 +16,14 @@ from benchmarks.files.service import BETWEEN, memory
 from service.ingest import apart, read_upload
 
 ROWS = 15_000_000
-"""As CSV of 7 digits they take about a gigabyte."""
+"""Rows of the log: as CSV of 7 digits they take about a gigabyte."""
 ROUNDS = 3
-"""Of which the median is reported."""
+"""Rounds, of which the median is reported."""
 
 
 @dataclass(frozen=True)
 class LongLog:
-    """What one format took."""
+    """Time and memory of one format."""
 
     kind: str
     size: int

@@ -1,4 +1,6 @@
-"""What the process apart costs an ordinary file: the same session as JSON, which is read in place, XLSX and Parquet."""
+"""Cost of the process apart for an ordinary file: one session as JSON, which is read in place, as XLSX and as
+Parquet.
+"""
 
 import json
 import time
@@ -10,7 +12,7 @@ from benchmarks.files.heavy import as_xlsx, log
 from service.ingest import read_upload
 
 CELLS = 24 * 7
-"""Of a session of averaged positions."""
+"""Cells of a session of averaged positions."""
 TIMES = 30
 
 

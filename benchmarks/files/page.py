@@ -1,4 +1,4 @@
-"""The page of what files cost."""
+"""The page of the costs of files."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -33,7 +33,7 @@ LIMITS = {
     "at_once": ("binary and large files that are read at once; others wait, then are rejected", RETRY),
     "in_flight": ("large uploads that are received or worked on at once; others are rejected", RETRY),
 }
-"""What each is of, and the answer beyond it."""
+"""Unit of each limit, and the answer beyond it."""
 MEBIBYTE = 1024**2
 
 

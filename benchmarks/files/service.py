@@ -16,7 +16,7 @@ import psutil
 BETWEEN = 0.02
 """Seconds between two looks at the memory, and between two questions to /healthz."""
 SERVE = "from service.cli import main; main()"
-"""As the command does."""
+"""Program of the service, as the command runs it."""
 NOTHING = 10.0
 """Seconds after which a service has nothing to do any more, and for which it is watched while nothing is sent."""
 MEBIBYTE = 1024**2
@@ -24,7 +24,7 @@ MEBIBYTE = 1024**2
 
 @dataclass(frozen=True)
 class Cost:
-    """Of one file, or of several at once."""
+    """Cost of one file, or of several at once."""
 
     statuses: tuple[int, ...]
     says: str
@@ -39,19 +39,19 @@ class Cost:
 
 @dataclass(frozen=True)
 class Service:
-    """A running one."""
+    """A running service."""
 
     address: str
     process: psutil.Process
     idle: float
     """MiB."""
     processes: int
-    """That it has started and keeps."""
+    """Number of processes that it has started and keeps."""
     client: httpx.Client
     """One, because to make one takes longer than an answer."""
 
     def cost(self, contents: list[bytes]) -> Cost:
-        """What these files cost, sent at once."""
+        """The cost of these files, sent at once."""
         done, peaks, waits = Event(), [self.idle], [0.0]
         watchers = [
             Thread(target=_until, args=(done, lambda: peaks.append(memory(self.process)))),

@@ -1,4 +1,4 @@
-"""What a stored session costs in bytes: ``python -m benchmarks.fleet.bytes``.
+"""Bytes of a stored session: ``python -m benchmarks.fleet.bytes``.
 
 A few units come in by the front door with their diagnoses; then every table is counted as PostgreSQL keeps it, with its
 indexes and what it puts aside of long values, over the sessions. A table that grows with units says so by its rows.

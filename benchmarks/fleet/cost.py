@@ -1,4 +1,4 @@
-"""What an answer costs: processor time of the service and of the database behind it, and its questions."""
+"""Cost of an answer: processor time of the service and of its database, and the number of queries."""
 
 import statistics
 import time
@@ -14,7 +14,7 @@ NANO = 1e-9
 
 @dataclass(frozen=True)
 class Cost:
-    """Of one answer."""
+    """Cost of one answer."""
 
     seconds: float
     """Processor time, s: of this process and of the database's."""

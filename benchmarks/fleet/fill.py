@@ -28,15 +28,15 @@ TEMPLATES = 10
 STANDS = ("ODG-1", "ODG-2", "ODG-3")
 START = datetime(2021, 1, 4, 9, tzinfo=UTC)
 NOW = datetime(2026, 6, 1, 12, tzinfo=UTC)
-"""When the pages are looked at."""
+"""Time at which the pages are looked at."""
 MICRO_G = 9.80665e-6
 AWAY = {"unit": 100_000, "flag": 1_000_000}
-"""Between the keys of a unit and of its copy, more than templates have."""
+"""Distance between the keys of a unit and of its copy: more than there are templates."""
 COPIED = (
     "units", "sessions", "parameters", "decisions", "common_motions", "diagnoses", "conditions", "outlooks",
     "histories", "flags", "notices",
 )  # fmt: skip
-"""In an order that foreign keys allow."""
+"""Tables that are copied, in an order that foreign keys allow."""
 HASH = "md5({0} || '/' || n) || md5(n || '/' || {0})"
 SERIAL = "serial || '-' || lpad(n::text, 5, '0')"
 KEY = "substr(md5({0} || '/' || n), 1, 20)"
@@ -47,16 +47,16 @@ CHANGED = {
     "document": "replace({0}::text, (SELECT serial FROM units u WHERE u.id = unit_id),"
     " (SELECT serial FROM units u WHERE u.id = unit_id) || '-' || lpad(n::text, 5, '0'))::json",
 }  # fmt: skip
-"""What a column of a copy holds instead of its original's; of a table, or of all."""
+"""Expressions for the columns of a copy that differ from the original, for one table or for all."""
 
 
 @dataclass(frozen=True)
 class Size:
-    """Of a fleet."""
+    """Size of a fleet."""
 
     units: int
     sessions: int
-    """Of every unit."""
+    """Sessions of every unit."""
 
 
 def fill(storage: Storage, size: Size) -> None:

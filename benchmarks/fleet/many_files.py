@@ -20,20 +20,20 @@ TYPE = "redundant block"
 START = datetime(2021, 1, 4, 9, tzinfo=UTC)
 NOW = datetime(2026, 6, 1, 12, tzinfo=UTC)
 AWAY = 100_000
-"""Between the keys of a unit and of its copy: more than there are templates."""
+"""Distance between the keys of a unit and of its copy: more than there are templates."""
 COPIED = ("units", "sessions", "calibrations", "parameters", "decisions", "common_motions", "conditions")
-"""What computing again reads or writes, in an order that foreign keys allow."""
+"""Tables that recomputation reads or writes, in an order that foreign keys allow."""
 ID = "(SELECT c.id FROM copied c WHERE c.old = {0} AND c.n = copies.n)"
 CHANGED = {
     "serial": "serial || '-' || n", "unit_id": f"unit_id + n * {AWAY}", "units.id": f"id + n * {AWAY}",
     "sessions.id": ID, "session_id": ID, "last_session": ID, "content_digest": "md5(content_digest || n)",
     "sha256": "(SELECT c.sha256 FROM copied c WHERE c.old = sessions.id AND c.n = copies.n)",
 }  # fmt: skip
-"""What a column of a copy holds instead of its original's."""
+"""Expressions for the columns of a copy that differ from the original."""
 
 
 def fill(storage: Storage, units: int) -> None:
-    """So many units, ten at least."""
+    """Fills the storage with so many units, ten at least."""
     for unit in range(TEMPLATES):
         for number in range(SESSIONS):
             content = _content(f"BA-{unit:03}", number)
@@ -56,7 +56,7 @@ def _content(unit: str, number: int) -> bytes:
 
 
 def _copy_files(storage: Storage, connection: Connection, times: int) -> None:
-    """The same readings under another serial number have another hash; where each is kept goes into a table."""
+    """Stores copies of the files under other serial numbers, each with a hash of its own, and lists them in a table."""
     connection.execute(
         text("CREATE TEMPORARY TABLE copied (old text, n int, id text, sha256 text, PRIMARY KEY (old, n))")
     )

@@ -36,7 +36,7 @@ def seconds(row: str) -> float:
 
 
 def bytes_a_session() -> tuple[float, float]:
-    """Of tables and of the uploaded file, as the guide states them."""
+    """Bytes of a session in tables and in its uploaded file, as the guide states them."""
     found = STORED.search(GUIDE.read_text(encoding="utf-8"))
     assert found is not None, f"{GUIDE} states no bytes of a session"
     tables, file = (float(number.replace(",", "")) for number in found.groups())

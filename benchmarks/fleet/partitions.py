@@ -1,4 +1,4 @@
-"""Whether partitions of the largest table of rows would pay: ``python -m benchmarks.fleet.partitions``.
+"""Tests whether partitions of the largest table would pay: ``python -m benchmarks.fleet.partitions``.
 
 The parameters of a filled fleet are copied into three tables with the same rows, keys and indexes: one as it is, one in
 sixteen parts by unit, one in parts by year. What is done with them is timed by the clock, warm, medians in turn over
@@ -29,7 +29,7 @@ SIZE = Size(5_000, 20)
 PARTS, YEARS = 16, range(2020, 2027)
 LAYOUTS = {"one table": "", "by unit": "PARTITION BY HASH (unit_id)", "by year": "PARTITION BY RANGE (at)"}
 KEYS = {"one table": "", "by unit": ", unit_id", "by year": ", at"}
-"""What the primary key must hold besides its own columns."""
+"""Columns that the primary key must hold besides its own, by layout."""
 KEY = "session_id, revision, sensor, parameter"
 HISTORY = "SELECT * FROM {0} WHERE unit_id = %s ORDER BY at, session_id, sensor_index, parameter"
 SESSION = "SELECT * FROM {0} WHERE session_id = %s AND revision = 0"
@@ -39,7 +39,7 @@ INSERT = (
     " FROM parameters WHERE session_id = %s AND revision = 0"
 )
 FIRST_YEAR = "2022-01-01"
-"""What was measured before it is taken out."""
+"""Rows measured before this date are taken out."""
 TIMES = 200
 
 Connection = psycopg.Connection[tuple[object, ...]]
@@ -73,7 +73,7 @@ def written(url: str) -> str:
 
 
 def copy(connection: Connection, layout: str, table: str) -> None:
-    """The same rows in another layout."""
+    """Copies the rows into another layout."""
     connection.execute(f"CREATE TABLE {table} (LIKE parameters) {LAYOUTS[layout]}")
     if layout == "by unit":
         for k in range(PARTS):
@@ -115,7 +115,7 @@ def lines(connection: Connection, tables: dict[str, str]) -> Iterator[str]:
 
 
 def line(name: str, cells: list[str]) -> str:
-    """Of the table."""
+    """A line of the table."""
     return f"| {name} | {' | '.join(cells)} |"
 
 
@@ -139,7 +139,7 @@ def once(connection: Connection, statement: str) -> float:
 
 
 def taken_out(connection: Connection, tables: dict[str, str]) -> Iterator[float]:
-    """By deleting and vacuuming, or by dropping the parts of those years."""
+    """Seconds of taking out old rows: by deleting and vacuuming, or by dropping the parts of those years."""
     for layout, table in tables.items():
         if layout == "by year":
             old = ", ".join(f"{table}_{year}" for year in YEARS if f"{year + 1}-01-01" <= FIRST_YEAR)

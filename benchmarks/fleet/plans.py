@@ -1,4 +1,4 @@
-"""How PostgreSQL reads what pages of a large fleet ask: the plans, as a file of benchmarks/results.
+"""Writes PostgreSQL's plans for the queries of a large fleet's pages, as a file of benchmarks/results.
 
 ``python -m benchmarks.fleet.plans`` fills a fleet of 10,000 units and writes them; with the address of a
 database that was filled so, it reads that one.
@@ -53,7 +53,7 @@ QUESTIONS: dict[str, Callable[[Store], object]] = {
     "What the page of a unit begins with": lambda store: Fleet(store).unit_known(UNIT, NOW),
 }
 NODE = re.compile(r"(Seq Scan|Index Only Scan|Index Scan|Bitmap Index Scan)( Backward)?( using (\w+))?( on (\w+))?")
-"""Where rows come from."""
+"""Nodes of a plan that read rows."""
 
 
 def main() -> None:

@@ -18,7 +18,7 @@ SIZES = ("1e-320", "5e-324", "1e-300", "1e-60", "1e-30", "1e-6", "1", "1e6", "1e
 WHOLE = (str(2**63), str(2**64), str(-(10**30)), str(10**400))
 NO_NUMBERS = ("true", "NaN", "Infinity", "-Infinity", '"1"', '"1e-320"', "null", "1e400")
 EXTREMES = ("0", "-0.0", *(sign + size for size in SIZES for sign in ("", "-")), *WHOLE, *NO_NUMBERS)
-"""As JSON writes them, and as Python's reader takes them."""
+"""Extreme numbers as JSON writes them, and as Python's reader takes them."""
 MARK = "@number@"
 
 Document = dict[str, Any]
@@ -37,7 +37,7 @@ class Case:
 
     @property
     def name(self) -> str:
-        """For the table."""
+        """Name of the case in the table."""
         place = ".".join(map(str, self.way))
         return f"{self.programme}: {place}{'[]' if self.whole else ''} = {self.number[:20]}"
 
@@ -46,7 +46,7 @@ class Case:
         return json.dumps(self.document(unit)).replace(f'"{MARK}"', self.number).encode()
 
     def document(self, unit: str) -> Document:
-        """The same with a mark where the number stands."""
+        """The file with a mark where the number stands."""
         document: Document = json.loads(json.dumps(programmes()[self.programme])) | {"unit": unit, "unit_type": unit}
         if "stand" in document:
             document["stand"]["id"] = unit
@@ -67,7 +67,7 @@ def cases() -> Iterator[Case]:
 
 
 def places(node: object, way: Way = ()) -> Iterator[tuple[Way, bool]]:
-    """Where numbers stand: the first of a kind, a row and the whole of every column."""
+    """The places of numbers: the first of a kind, a row and the whole of every column."""
     if isinstance(node, dict):
         for key, child in node.items():
             yield from places(child, (*way, key))
@@ -102,7 +102,7 @@ def programmes() -> dict[str, Document]:
 
 
 def in_csv(case: Case, unit: str) -> bytes:
-    """The same as CSV; what stands in the table as it is written."""
+    """The case as CSV; the table holds the number as it is written."""
     head = case.document(unit)
     table = head.pop("table")
     lines = [",".join(table), *(",".join(map(_cell, row)) for row in zip(*table.values(), strict=True))]
@@ -114,7 +114,7 @@ def in_csv(case: Case, unit: str) -> bytes:
 
 
 def in_xlsx(case: Case, unit: str) -> bytes:
-    """The same as a workbook; a number that no cell can hold is a text there."""
+    """The case as a workbook; a number that no cell can hold is a text there."""
     head = case.document(unit)
     table = head.pop("table")
     value = _value(case.number)

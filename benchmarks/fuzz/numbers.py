@@ -36,12 +36,12 @@ BUSY = httpx.codes.SERVICE_UNAVAILABLE
 MOMENT = 0.5
 """Seconds between two looks at what still waits."""
 PARTS = ("", "/calibration", "/diagnosis", "/correction", "/file")
-"""Of a session that was taken."""
+"""Parts of a session that was accepted."""
 FAULT = re.compile(r"^imu_health_background_faults_total\{.*\} [1-9]")
 PENDING = re.compile(r"^imu_health_pending_diagnoses (\S+)", re.MULTILINE)
 PAGE = Path(__file__).with_name("NUMBERS.md")
 LOG = Path("build/fuzz-numbers.log")
-"""Where the service's log is kept."""
+"""File of the service's log."""
 SAMPLE = 7
 """One case of so many in the other formats: they share the checks behind the reader."""
 JSON = {"Content-Type": "application/json"}
@@ -60,7 +60,7 @@ find if it ends so then. A warning of the program is one too.
 
 
 T = TypeVar("T", bound="Named")
-"""What is sent."""
+"""Type of the thing that is sent."""
 
 
 class Named(Protocol):
@@ -68,14 +68,14 @@ class Named(Protocol):
 
     @property
     def name(self) -> str:
-        """For the table."""
+        """Name for the table."""
 
 
 class Choose(Protocol):
-    """Which of all cases are sent."""
+    """Choice of the cases that are sent."""
 
     def __call__(self, every: Iterable[T]) -> list[T]:
-        """Those of them."""
+        """The chosen cases."""
 
 
 Ask = Callable[[int], httpx.Response]
@@ -84,7 +84,7 @@ Ask = Callable[[int], httpx.Response]
 
 @dataclass
 class Tally:
-    """What became of the cases."""
+    """Outcomes of the cases."""
 
     answers: Counter[tuple[str, int]] = field(default_factory=Counter)
     finds: list[str] = field(default_factory=list)
@@ -112,7 +112,7 @@ class Tally:
         return answer
 
     def enqueue_again(self) -> None:
-        """What was late, alone."""
+        """Sends the late cases again, one by one."""
         for name, ask in self.late:
             began = time.monotonic()
             status = ask(1).status_code
@@ -121,7 +121,7 @@ class Tally:
                 self.find(f"{name}, alone: {status} in {seconds:.1f} s")
 
     def find(self, text: str) -> None:
-        """Something that must not be."""
+        """Prints and records a finding."""
         print(text, flush=True)
         self.finds.append(text)
 
@@ -194,7 +194,7 @@ def _upload(running: Service, tally: Tally, group: str, name: str, content: Call
 
 
 def _read(running: Service, tally: Tally, id: str) -> None:
-    """Everything that is made of a stored session."""
+    """Asks for everything that the service makes of a stored session."""
     unit = running.client.get(f"{running.address}/api/v1/sessions/{id}").json()["unit"]
     paths = (*(f"/api/v1/sessions/{id}{part}" for part in PARTS), f"/sessions/{id}", f"/units/{unit}")
     for path in (*paths, f"/api/v1/units/{unit}/usable"):

@@ -28,23 +28,23 @@ ENGINES: dict[str, Callable[[], AbstractContextManager[Databases]]] = {
     "postgresql": postgres_databases,
     "postgresql-server": postgres_databases,
 }
-"""What is killed beside the service: nothing, a process of the database, or the whole server."""
+"""Engines, by the thing that is killed beside the service: nothing, a process of the database, or the whole server."""
 
 
 @dataclass(frozen=True)
 class Chosen:
-    """How much is tried."""
+    """Number of kills, and the load around them."""
 
     kills: int
     seed: int
     longest: float = LONGEST
     uploads: int = 0
-    """That are acknowledged before each kill, and after the last."""
+    """Uploads that are acknowledged before each kill, and after the last."""
 
 
 @dataclass(frozen=True)
 class Seen:
-    """What the kills left."""
+    """Outcome of the kills."""
 
     engine: str
     service_kills: int
@@ -82,7 +82,7 @@ def main() -> int:
 
 
 def kill_of_database(engine: str, databases: Databases, settings: Settings) -> Kill | None:
-    """How the database is killed; None of SQLite, which has no process of its own."""
+    """Function that kills the database; None for SQLite, which has no process of its own."""
     if not isinstance(databases, PostgresDatabases):
         return None
     return kill_of_all(databases) if engine == "postgresql-server" else kill_of_one(settings)

@@ -12,7 +12,7 @@ from service.settings import Settings
 from tests.databases import Databases, PostgresDatabases
 
 ATTEMPTS, PAUSE = 600, 0.1
-"""To reach a database that recovers, and the seconds between them."""
+"""Attempts to reach a database that recovers, and the seconds between them."""
 ENDED = 10.0
 """Seconds in which the kernel takes away what was killed."""
 

@@ -17,7 +17,7 @@ from tests.service.storage.intact import SENSORS
 
 CLIENTS = 2
 SESSIONS_OF_A_UNIT = 6
-"""So that histories are read and written too, and do not grow so long that little is uploaded."""
+"""Sessions of a unit: enough that histories are read and written too, few enough that uploads stay fast."""
 GIVEN_UP = 0.5
 """Share of the unanswered uploads that are never sent again: those may be stored or not, but not by halves."""
 PAUSE = 0.02
@@ -29,7 +29,7 @@ LONGEST = 120.0
 
 @dataclass
 class Load:
-    """What was sent, and what was acknowledged."""
+    """Uploads sent, and uploads acknowledged."""
 
     address: str
     seed: int
@@ -56,7 +56,7 @@ class Load:
             client.result()
 
     def wait_for(self, uploads: int) -> None:
-        """Until so many were acknowledged."""
+        """Waits until so many uploads were acknowledged."""
         end = monotonic() + LONGEST
         while len(self.acknowledged) < uploads:
             if monotonic() > end:
@@ -72,7 +72,7 @@ class Load:
                 self._upload(client, content, chance)
 
     def _upload(self, client: httpx.Client, content: bytes, chance: random.Random) -> None:
-        """Until it is acknowledged, given up, or the load ends."""
+        """Uploads until the session is acknowledged or given up, or the load ends."""
         tries = 0
         while not self._stop.wait(PAUSE if tries else 0):
             tries += 1

@@ -30,7 +30,7 @@ def free_port() -> int:
 
 
 def serve(settings: Settings, port: int, *, beside: bool = True) -> None:
-    """What the process does until it is killed; without work ``beside`` it answers requests and nothing else."""
+    """Serves until the process is killed; without work ``beside`` it answers requests and nothing else."""
     logging.disable()
     here = settings.model_copy(update={"port": port})
     server = Server(create_app(here), here)
@@ -50,7 +50,7 @@ class Service:
 
     @property
     def address(self) -> str:
-        """Where it listens."""
+        """Address that it listens on."""
         return f"http://127.0.0.1:{self.port}"
 
     def start(self) -> None:

@@ -1,1 +1,1 @@
-"""What the service depends on, and under which licence."""
+"""Dependencies of the service, with their licences."""

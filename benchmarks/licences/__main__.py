@@ -21,7 +21,7 @@ NOT_HERE = "not installed on this kind of machine"
 
 
 def licence(name: str) -> str:
-    """As the package states it: an expression, else its classifiers, else the first line of the field."""
+    """The licence that the package states: an expression, else its classifiers, else the first line of the field."""
     try:
         found = metadata(name)
     except PackageNotFoundError:

@@ -19,9 +19,9 @@ FIRST_STEP = 0.01
 """Dimensionless: 1 % of scale, 0.01 g, 0.01 rad, the size of the errors that are looked for."""
 
 GROW = 2.0
-"""Of a parameter's step where it lowered the functional; see above."""
+"""Factor on a parameter's step where it lowered the functional; see above."""
 SHRINK = 0.5
-"""Of a parameter's step where neither side did; see above."""
+"""Factor on a parameter's step where neither side lowered it; see above."""
 
 STILL = 1e-12
 """Steps below this are rounding."""
@@ -32,7 +32,7 @@ MOST_ITERATIONS = 20_000
 
 @dataclass(frozen=True, eq=False)
 class Search:
-    """Where a search on the triples functional ended, and how it went there."""
+    """The end of a search on the triples functional, and its path."""
 
     x: Array
     """(P,) δk, b/g, α, β of `Triples`; relative, rad."""
@@ -42,7 +42,7 @@ class Search:
     iterations: int
     """Passes over all parameters; for Levenberg–Marquardt, Jacobians."""
     evaluations: int
-    """Of the functional."""
+    """Evaluations of the functional."""
     converged: bool
     path: Array
     """(iterations, P) where each iteration ended, as `x`; only the last for Levenberg–Marquardt."""
@@ -95,7 +95,7 @@ def descend(
 
 
 def levenberg_marquardt(problem: Triples, start: Array | None = None) -> Search:
-    """The same functional by MINPACK's Levenberg–Marquardt with the exact Jacobian; start (P,) dimensionless."""
+    """Minimises the functional by MINPACK's Levenberg–Marquardt with the exact Jacobian; start (P,) dimensionless."""
     x = np.zeros(len(problem.free)) if start is None else start
     solution = least_squares(problem.misses, x, jac=problem.jacobian, method="lm", xtol=1e-14, ftol=1e-14, gtol=1e-14)
     return Search(

@@ -70,7 +70,7 @@ did not compute with what it printed."""
 
 
 def formulas(trials: int = TRIALS) -> str:
-    """Both tables as markdown."""
+    """Both sections on the formulas, as markdown."""
     columns = ("source", "", f"{trials} simulated", "checked", "checked / simulated", "printed", "printed / simulated")
     details = f"{WORDS}\n\n{table(columns, compared(trials))}"
     first = section("Formulas (28)–(30), source by source", details, AGREED)

@@ -23,7 +23,7 @@ NOISE = 2.5e-6
 
 
 def elevations() -> str:
-    """(6) for the paper's stand, and the elevation that the Jacobians ask for."""
+    """The elevation by (6) for the paper's stand, and the one that the Jacobians ask for."""
     rows: list[tuple[object, ...]] = []
     base = schedule(ACCELEROMETERS, 24)
     variation, g = ACCELEROMETERS.conditions.bias_variation, ACCELEROMETERS.conditions.magnitude
@@ -94,7 +94,7 @@ def two_planes(count: int) -> Array:
 
 
 def orientation_sets() -> str:
-    """Which sets of orientations identify everything."""
+    """Sets of orientations, and what each identifies."""
     drawn = np.random.default_rng(5).standard_normal((24, 3))
     sets = [
         ("six faces", np.concatenate([np.eye(3), -np.eye(3)])),

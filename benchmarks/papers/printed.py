@@ -27,7 +27,7 @@ from estimator.session import Array, StandErrors
 
 @dataclass(frozen=True)
 class Conditions:
-    """What an accuracy depends on, one sigmas. Angles in rad, the rest at the input in m/s² (rad/s)."""
+    """Conditions of an accuracy, one sigmas. Angles in rad, the rest at the input in m/s² (rad/s)."""
 
     alpha: float
     """Elevation, α or χ."""
@@ -36,9 +36,9 @@ class Conditions:
     magnitude: float
     """Length of the applied vector, g or the Earth's rate."""
     noise: float
-    """Of one reading."""
+    """Noise of one reading."""
     bias_variation: float
-    """Of the zero from reading to reading."""
+    """Variation of the zero from reading to reading."""
     stand: StandErrors
 
     @property
@@ -56,7 +56,7 @@ class Accuracy:
     bias: Array
     """(...,) (m/s²)² or (rad/s)²."""
     axis: Array
-    """(...,) of both turns together, rad²."""
+    """(...,) variance of both turns together, rad²."""
 
 
 def gyro_conditions(c: Conditions, latitude: float) -> Conditions:

@@ -1,4 +1,4 @@
-"""What the analytic alignment paper states: its block, its conditions, its tables. SI, 2σ where it says so."""
+"""The analytic alignment paper: its block, its conditions, its tables. SI, 2σ where it says so."""
 
 from dataclasses import dataclass, replace
 
@@ -31,10 +31,10 @@ class Published:
     title: str
     columns: tuple[str, str, str]
     units: tuple[float, float, float]
-    """What one of the table's numbers is in SI: bias, relative scale, axis."""
+    """Size in SI of one unit of the table: bias, relative scale, axis."""
     rows: tuple[tuple[int, float, float, float], ...]
     conditions: Conditions
-    """Of the first row, noise still to be fitted."""
+    """Conditions of the first row, noise still to be fitted."""
 
     def at(self, positions: int, noise: float) -> Conditions:
         """The conditions of a row."""

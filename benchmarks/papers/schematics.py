@@ -19,7 +19,7 @@ TO_LEVEL = np.asarray(Rotation.from_euler("x", ALPHA).as_matrix())
 PAPER_BLOCK = np.array([[0, 0, 1], [1, 0, 0], [0, 1, 0]], dtype=float)
 """(10): platform axes in block axes."""
 EYE = np.array([0.92, 0.22, 0.5])
-"""Where the drawing is looked at from."""
+"""Direction from which the drawing is seen."""
 RIGHT = np.array([-EYE[1], EYE[0], 0.0]) / np.hypot(EYE[0], EYE[1])
 LOOK = np.stack([RIGHT, np.cross(EYE, RIGHT) / np.linalg.norm(EYE), EYE / np.linalg.norm(EYE)])
 """Level axes → right, up, towards the reader."""

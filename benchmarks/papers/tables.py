@@ -132,7 +132,7 @@ times; 0.036 % is 3.6e-4, to which 105″ or 69″ belong, not 36″."""
 
 
 def tables(trials: int = TRIALS) -> str:
-    """Both tables as markdown."""
+    """The tables of both papers, as markdown."""
     parts = []
     for paper, cause in ((ACCELEROMETERS, CAUSE_1), (GYROS, CAUSE_2)):
         parts.append(section(paper.title, table(COLUMNS, reproduced(paper, trials)), noises(paper), cause))

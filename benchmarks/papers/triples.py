@@ -37,7 +37,7 @@ FLATTEST = 0.05
 
 @dataclass(frozen=True, eq=False)
 class Triples:
-    """What the functional is made of. R orientations, m sensors, T triples, P = 4 m − 3 parameters."""
+    """Data of the functional. R orientations, m sensors, T triples, P = 4 m − 3 parameters."""
 
     u: Array
     """(R, m) readings over nominal scale, m/s²."""
@@ -95,7 +95,7 @@ class Triples:
         return full.reshape(R * T, 4 * m)[:, self.free]
 
     def axis_derivative(self, full: Array) -> Array:
-        """(m, 3, 2) of each unit axis by its α and β, 1/rad, at all elements (m, 4)."""
+        """(m, 3, 2) derivative of each unit axis by its α and β, 1/rad, at all elements (m, 4)."""
         raw = self.nominal_axes + (self.frames @ full[:, 2:, None])[..., 0]
         length = np.linalg.norm(raw, axis=1)[:, None, None]
         e = raw[:, :, None] / length

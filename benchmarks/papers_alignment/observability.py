@@ -1,4 +1,4 @@
-"""What an alignment can see, before it is flown: rank of its Gramian, expected sigmas, and what nothing can see.
+"""Observability of an alignment before it is flown: rank of its Gramian, expected sigmas, and what remains unseen.
 
 Covariance analysis runs the filter without readings: its sigmas depend on the path and the noise alone. The Gramian
 O = Σ (H·Φ_k)ᵀR⁻¹(H·Φ_k), Φ_k from the start to step k, leaves out prior and gyro noise; it is counted in units of the
@@ -45,7 +45,7 @@ REPORTED = slice(2, 13)
 
 @dataclass(frozen=True, eq=False)
 class Expected:
-    """What a programme would tell. n states reported, at most 11."""
+    """Expected result of a programme. n states reported, at most 11."""
 
     names: tuple[str, ...]
     sigmas: Array
@@ -88,7 +88,8 @@ def expected(path: Path, setting: FilterSetting, model: InertialModel) -> Expect
 
 
 def gramian(path: Path, setting: FilterSetting, model: InertialModel) -> Array:
-    """(n, n) of the states but ς at the start, dimensionless, in units of `USEFUL`; no prior and no gyro noise.
+    """(n, n) observability Gramian of the states but ς at the start, dimensionless, in units of `USEFUL`; no prior and
+    no gyro noise.
 
     Every step's velocity counts with the scatter that white accelerometer noise gives it.
     """
@@ -126,7 +127,7 @@ def hidden(attitude: Array, E_xz: float, E_yz: float, g: float) -> Array:
 
 
 def mounting_effect(E_xz: float, E_yz: float, g: float) -> dict[str, float]:
-    """What unmodelled mounting errors leave in the estimates after a half turn about the vertical, equation (5).
+    """Errors of the estimates after a half turn about the vertical by unmodelled mounting errors, equation (5).
 
     Parameters
     ----------

@@ -37,7 +37,7 @@ class Errors:
     nabla: Array
     """(K, 2) m/s²."""
     sigmas: Array
-    """(K, n) of the states."""
+    """(K, n) sigmas of the states."""
     turning: Array
     """(K,) whether the table turns."""
 

@@ -125,7 +125,7 @@ def plans() -> str:
 
 
 def rate_tables() -> str:
-    """What a rate table tells of E, by the length of the run."""
+    """Accuracy of E from a rate table, by the length of the run."""
     rows = []
     for turns in (3, 6, 12, 24):
         time = turns * 36.0 + 0.5

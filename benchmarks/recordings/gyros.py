@@ -9,7 +9,7 @@ from estimator import diagnose
 from estimator.session import GYROSCOPE, CalibrationSession
 
 DEGREES_AN_HOUR = 206_264.8
-"""Of a rad/s."""
+"""Degrees an hour in a rad/s."""
 
 
 def gyros() -> str:

@@ -1,4 +1,4 @@
-"""What the publications state of their sensors, in the form of `Triad`; sources in docs/recordings.md."""
+"""The publications' own calibrations of their sensors, in the form of `Triad`; sources in docs/recordings.md."""
 
 import numpy as np
 

@@ -22,7 +22,7 @@ FILES = {
 
 
 def folder() -> Path:
-    """Where the recordings are: the environment's word, or beside the project."""
+    """Folder of the recordings: as the environment states it, or beside the project."""
     return Path(os.environ.get(FOLDER, Path(__file__).resolve().parents[3] / "shared" / "data"))
 
 

@@ -13,7 +13,7 @@ from tests.blind.courses import BLOCKS, draw_departing
 BLOCK = BLOCKS[-1]
 FOLLOWING, DEPARTING = BLOCK.accelerometers, 4
 EACH = 15.0
-"""Of every sensor, standard errors."""
+"""Strength of every sensor, standard errors."""
 LIMIT = 1.21
 """Held-out χ²/dof."""
 MOST = 2
@@ -24,7 +24,7 @@ KINDS = ("with time constants of their own", "with a quicker course beside it")
 
 
 def departing(sessions: int, seed: int) -> Iterator[Line]:
-    """So many sessions of either kind."""
+    """Lines from so many sessions of either kind."""
     for second, words in enumerate(KINDS):
         found = [_diagnosed((seed, FOLLOWING, DEPARTING, k, second)) for k in range(sessions)]
         head = f"24 sensors settle, {DEPARTING} of them {words}: "

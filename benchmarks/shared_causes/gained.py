@@ -1,4 +1,4 @@
-"""What naming a cause gains, in one sentence."""
+"""Gain from naming a cause, in one sentence."""
 
 import re
 from collections.abc import Iterator

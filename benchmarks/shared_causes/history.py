@@ -11,13 +11,13 @@ from estimator.diagnosis.results import Diagnosis
 from tests.blind.courses import BLOCKS, BOTH, CHANGED, COLD, SOUND, Life, draw_life
 
 EACH = 15.0
-"""Of every sensor, standard errors."""
+"""Strength of every sensor, standard errors."""
 DRIFT, COURSE = "sensor-drift", "warm-up"
 MEASURED = (BLOCKS[0], BLOCKS[2])
 
 
 def with_history(sessions: int, seed: int) -> Iterator[Line]:
-    """So many units of every kind and block."""
+    """Lines from so many units of every kind and block."""
     for number, block in enumerate(MEASURED):
         drawn = {
             kind: [_diagnosed(number, kind, (seed, number, place, k)) for k in range(sessions)]

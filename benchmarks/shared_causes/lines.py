@@ -70,7 +70,7 @@ def head(kept: dict[str, str]) -> str:
 
 
 def is_asked(line: Line) -> bool:
-    """Whether a line has a target, and the target is of it."""
+    """Whether a line has a target that applies to it."""
     words, target, _ = line
     return bool(target) and ("at" not in target or target.split()[-1] in words.split())
 
@@ -91,7 +91,7 @@ def asked(lines: Sequence[Line], reasons: list[str]) -> str:
 
 
 def with_reason(line: Line, reasons: list[str]) -> str:
-    """What is measured; where it misses its target that too, with the number of its reason."""
+    """The measured value; where it misses its target, with the number of its reason."""
     words, target, measured = line
     verdict = verdict_of(target, measured)
     why = next((reason for part, reason in WHY.items() if part in words), "")
@@ -117,7 +117,7 @@ def rests() -> Iterator[Line]:
 
 
 def verdict_of(target: str, measured: str) -> str:
-    """Whether what is measured misses its target; of a rate by its interval too."""
+    """Whether the measured value misses its target; for a rate also by its interval."""
     least, most = bounds(target)
     rate = re.match(r"([\d.]+) % \(([\d.]+)[–a-z ]+([\d.]+)\)", measured)
     spread = re.fullmatch(r"([\d.]+) ± ([\d.]+)", measured)

@@ -14,12 +14,12 @@ from tests.blind.world import Session
 
 STAND, _, SIX, TWELVE = BLOCKS
 SHARE, TIMES = 0.03, 5.0
-"""Of readings in contaminated errors, and how many times as large these are."""
+"""Share of the readings with contaminated errors, and how many times as large these are."""
 FACTORS = (3.5, 5.0)
 OUTLIER, NOISE = "reading-outlier", "excess-noise"
 
 Line = tuple[str, str, str]
-"""What is asked, its target, what is measured."""
+"""Words, target and measured value of a line."""
 
 
 def student(freedom: float) -> Callable[[np.random.Generator, Any], Any]:
@@ -45,7 +45,7 @@ class Unlike(np.random.Generator):
     law: Callable[[np.random.Generator, Any], Any]
 
     def standard_normal(self, size: Any = None, *_: Any, **__: Any) -> Any:
-        """Of variance one."""
+        """Errors of variance one."""
         return self.law(self, size)
 
 
@@ -58,7 +58,7 @@ def errors(law: str, seed: tuple[int, ...]) -> Unlike:
 
 @dataclass(frozen=True)
 class Scene:
-    """What is measured, before its errors."""
+    """A scene to measure, before its errors."""
 
     block: Block
     world: Session
@@ -82,7 +82,7 @@ def names_of(document: dict[str, Any]) -> frozenset[tuple[str, tuple[str, ...]]]
 
 
 def tails(sessions: int, seed: int) -> Iterator[Line]:
-    """Of every law, on a stand and in orientations."""
+    """Lines for every law, on a stand and in orientations."""
     for number, law in enumerate(LAWS):
         for block in (STAND, SIX):
             seeds = [(seed, 1, number, BLOCKS.index(block), k) for k in range(sessions)]

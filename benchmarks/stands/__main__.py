@@ -24,13 +24,13 @@ LATE = 0.25
 TURN = 12.0
 """Arcsec."""
 BLOCKS = 2000
-"""Of each kind; so many that the interval is one per cent wide to either side."""
+"""Blocks of each kind; so many that the interval is one per cent wide to either side."""
 STILL = 4
 """Fleets in which nothing moves for one in which something does: a share of one per cent needs as many."""
 
 
 def steady(stand: int, time: float) -> float:
-    """Nothing moves."""
+    """Motion of a stand that stays."""
     return 0.0
 
 
@@ -66,19 +66,20 @@ def in_time(since: float, until: float) -> bool:
 
 
 def said(fleets: int, seed: int, fleet: Fleet, asked: Callable[[tuple[StandState, ...]], bool]) -> list[bool]:
-    """Whether something is said of each of so many fleets."""
+    """The verdict on each of so many fleets."""
     made = (motions_of(fleet, np.random.default_rng([seed, i])) for i in range(fleets))
     return [asked(stand_states(motions)) for motions in made]
 
 
 def share(fleets: int, seed: int, fleet: Fleet, asked: Callable[[tuple[StandState, ...]], bool]) -> Rate:
-    """How often it is said."""
+    """Rate at which the question holds."""
     return rate(said(fleets, seed, fleet, asked))
 
 
 def known(fleets: int, seed: int, fleet: Fleet) -> tuple[Rate, Rate]:
-    """How often the first stand is named, in the same fleets, by who knows all but the stand, and by who knows how
-    blocks are seated."""
+    """Rates at which the first stand is named, in the same fleets, by one who knows all but the stand, and by one who
+    knows how blocks are seated.
+    """
     all_else, seating = list[bool](), list[bool]()
     for i in range(fleets):
         motions = motions_of(fleet, np.random.default_rng([seed, i]))
@@ -88,7 +89,7 @@ def known(fleets: int, seed: int, fleet: Fleet) -> tuple[Rate, Rate]:
 
 
 def dated_best(fleets: int, seed: int, fleet: Fleet) -> list[bool]:
-    """Of each fleet, whether both dates of the excursion are found by who knows how blocks are seated."""
+    """Whether both dates of the excursion are found in each fleet by one who knows how blocks are seated."""
     found = []
     for i in range(fleets):
         motions = motions_of(fleet, np.random.default_rng([seed, i]))
@@ -98,7 +99,7 @@ def dated_best(fleets: int, seed: int, fleet: Fleet) -> list[bool]:
 
 
 def told(fleets: int, seed: int, fleet: Fleet) -> list[bool]:
-    """Of each fleet, whether three units were measured on the first stand within the month."""
+    """Whether three units were measured on the first stand within the month, in each fleet."""
     found = []
     for i in range(fleets):
         motions = motions_of(fleet, np.random.default_rng([seed, i]))
@@ -108,7 +109,7 @@ def told(fleets: int, seed: int, fleet: Fleet) -> list[bool]:
 
 
 def rows(fleets: int, seed: int) -> list[tuple[str, Rate, str]]:
-    """What is asked, how often it is so, and how often it should be."""
+    """Questions, with the measured rates and their targets."""
     two = [Fleet(12, 8, 2, lambda _, s, bad=bad: bad if s else 5.0, steady) for bad in (15.0, 30.0)]  # type: ignore[misc]
     beside = Fleet(10, 10, 2, lambda _, s: 30.0 if s else 5.0, turned)
     among = Fleet(20, 10, 2, lambda u, _: 30.0 if u < 10 else 5.0, turned)

@@ -12,14 +12,16 @@ from estimator.health.disc import judge_length
 ARCSEC = np.pi / 180 / 3600
 TOLERANCE = 20 * ARCSEC
 REACH = (0.2, 0.6)
-"""Of the drift, parts of the tolerance."""
+"""Range of the drift, parts of the tolerance."""
 FACTOR = 2.0
 """k."""
 Vectors = NDArray[np.float64]
 
 
 def held(m: int, sigma: float, blocks: int, seed: int) -> tuple[Rate, Rate]:
-    """How often U holds what the drifted axis did, and that each of the others did nothing; sigma of a session, rad."""
+    """Rates at which U holds the drifted axis' change, and the zero change of each of the others; sigma of a session,
+    rad.
+    """
     rng, own, others = np.random.default_rng([seed, m]), list[bool](), list[bool]()
     for _ in range(blocks):
         marks = _block(m, sigma, rng)
@@ -29,7 +31,7 @@ def held(m: int, sigma: float, blocks: int, seed: int) -> tuple[Rate, Rate]:
 
 
 def _block(m: int, sigma: float, rng: np.random.Generator) -> list[bool]:
-    """Of each axis, the drifted one first."""
+    """Whether U holds the change of each axis, the drifted one first."""
     axes = _cone(m)
     size, frames = rng.uniform(*REACH) * TOLERANCE, np.stack([_across(axis) for axis in axes])
     drifted, angle = axes.copy(), rng.uniform(0, 2 * np.pi)

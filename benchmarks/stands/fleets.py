@@ -16,7 +16,7 @@ from estimator.health.stands import StandMotion
 
 ARCSEC = np.pi / 180 / 3600
 SIGMA = 0.8 * ARCSEC
-"""Of a session, per component."""
+"""One sigma of a session, per component."""
 TAILS = 5.0
 """Degrees of freedom of a seating."""
 TURNED = np.array([0.6, 0.0, -0.8])
@@ -28,11 +28,11 @@ Turn = Callable[[int, float], float]
 
 @dataclass(frozen=True)
 class Fleet:
-    """What a fleet is made of."""
+    """Composition of a fleet."""
 
     units: int
     sessions: int
-    """Of every unit, at random dates within three years, on the stands at random."""
+    """Sessions of every unit, at random dates within three years, on the stands at random."""
     stands: int
     seating: Callable[[int, int], float]
     """Arcsec per component, of a unit on a stand."""

@@ -1,4 +1,4 @@
-"""What somebody would say of the same fleets who knows how blocks are seated; it shares nothing with the estimator.
+"""Oracles that know how blocks are seated, for the same fleets; they share nothing with the estimator.
 
 With τ known, V_u = diag(τ² + σ²) is that of a unit's sessions and P_u = V⁻¹ − V⁻¹11ᵀV⁻¹/1ᵀV⁻¹1 takes its mean off.
 A stand that turned by δ at a date, column d, gives b = dᵀPz ~ N(J·δ, J·1), J = dᵀPd.
@@ -16,14 +16,15 @@ from estimator.health.stands import StandMotion
 LEVEL = 0.01
 """Chance of naming a stand where nothing moved, that of the estimator."""
 DRAWS, PAIRED = 1000, 200
-"""Of fleets in which nothing moved, of the same schedule; so many that the limit is right to three in a thousand, and
-to seven where all pairs of dates are looked at."""
+"""Draws of fleets in which nothing moved, of the same schedule; so many that the limit is right to three in a thousand,
+and to seven where all pairs of dates are looked at.
+"""
 Vectors = NDArray[np.float64]
 Seating = Callable[[int, int], float]
 
 
 def knows_all_but_the_stand(motions: list[StandMotion], seating: Seating, turn: tuple[float, float]) -> bool:
-    """Whether the first stand is named by who knows date (years), direction and size (arcsec) of the ``turn``."""
+    """Whether the first stand is named by one who knows date (years), direction and size (arcsec) of the ``turn``."""
     since, size = turn
     stands, times, centred, value = _whole(motions, seating)
     columns = np.stack([(stands == s) & (times >= since) for s in np.unique(stands)]).astype(float)
@@ -34,8 +35,9 @@ def knows_all_but_the_stand(motions: list[StandMotion], seating: Seating, turn: 
 
 
 def knows_the_seating(motions: list[StandMotion], seating: Seating, rng: np.random.Generator) -> bool:
-    """Whether the first stand is named by who knows τ alone: the largest χ² of three over all dates of all stands, at
-    its own level on this schedule."""
+    """Whether the first stand is named by one who knows τ alone: the largest χ² of three over all dates of all stands,
+    at its own level on this schedule.
+    """
     stands, times, centred, value = _whole(motions, seating)
     columns = np.concatenate([(stands == s) & (times >= t) for s in np.unique(stands)
                               for t in times[stands == s, None, None]]).astype(float)  # fmt: skip
@@ -52,9 +54,10 @@ def knows_the_seating(motions: list[StandMotion], seating: Seating, rng: np.rand
 def knows_the_scatter(
     motions: list[StandMotion], seating: Seating, rng: np.random.Generator
 ) -> tuple[float, float] | None:
-    """From when to when the first stand was turned, years, for who knows τ alone: the largest χ² of three over all
-    pairs of dates of all stands that three units tell of, at its own level on this schedule; None where it is another
-    stand's, or no more than that."""
+    """The dates between which the first stand was turned, years, by one who knows τ alone: the largest χ² of three over
+    all pairs of dates of all stands with three units on either side, at its own level on this schedule; None where it
+    is another stand's, or within the level.
+    """
     stands, times, centred, value = _whole(motions, seating)
     units = np.array([m.unit for m in motions])
     still = np.sqrt(_variance(motions, seating))[:, None] * rng.standard_normal((len(motions), 3 * PAIRED))

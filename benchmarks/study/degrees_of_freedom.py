@@ -37,7 +37,7 @@ CASES = {3: (9, 10, 11, 12, 14, 17, 19), 4: (9, 10, 11), 6: (9, 10, 12)}
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """What m sensors really are."""
+    """The true parameters of m sensors."""
 
     axes: Array
     scale: Array
@@ -74,7 +74,7 @@ def measured(m: int, count: int, stated: bool, rng: np.random.Generator) -> tupl
 
 
 def held(result: Calibration, block: Block) -> list[bool]:
-    """Of every scale, bias and turn that has an uncertainty: whether its interval holds the truth."""
+    """Whether the interval of each scale, bias and turn with an uncertainty holds the truth."""
     found = []
     for i, sensor in enumerate(result.sensors):
         for estimate, true in ((sensor.scale, block.scale[i]), (sensor.bias, block.bias[i])):
@@ -88,13 +88,13 @@ def held(result: Calibration, block: Block) -> list[bool]:
 
 @dataclass(frozen=True)
 class Counted:
-    """What sessions of one kind claimed."""
+    """Claims of the sessions of one kind."""
 
     sensors: int
     orientations: int
     stated: bool
     shares: tuple[float, ...]
-    """Of every session with uncertainties: the share of its intervals that held."""
+    """Share of the intervals that held, for every session with uncertainties."""
     silent: int
     """Sessions without uncertainty."""
     quadratic: int
@@ -113,7 +113,7 @@ class Counted:
 
 
 def counted(m: int, count: int, stated: bool, sessions: int, seed: int) -> Counted:
-    """So many sessions of one kind."""
+    """Counts over so many sessions of one kind."""
     rng = np.random.default_rng([seed, m, count, stated])
     shares: list[float] = []
     quadratic = silent = 0
@@ -136,7 +136,7 @@ def _share(shares: Sequence[float]) -> str:
 
 
 def raw_row(seconds: float, time: float, size: float, logs: int, seed: int) -> str:
-    """Of 20 rests of three sensors: how often the error of a mean holds, and its size beside the true one."""
+    """A row on 20 rests of three sensors: how often the error of a mean holds, and its ratio to the true one."""
     n, decay, start = int(seconds * RATE), np.exp(-1 / (time * RATE)), np.arange(20) * int((seconds + 10) * RATE)
     shares, ratios = [], []
     for k in range(logs):
@@ -167,7 +167,7 @@ def orientations(sessions: int, seed: int) -> Iterator[Counted]:
 
 
 def targets(found: Sequence[Counted]) -> str:
-    """What is asked of sessions that do not state their noise."""
+    """Targets of sessions that do not state their noise."""
     few = [share for c in found if not c.stated and 1 <= c.freedom <= 10 for share in c.shares]
     none = [c for c in found if not c.stated and c.freedom == 0]
     claims = Rate(sum(len(c.shares) for c in none), sum(len(c.shares) + c.silent for c in none))

@@ -62,7 +62,7 @@ NEVER = -1e3
 CUTS = np.geomspace(0.02, 8.0, 80)
 """Thresholds tried, in standard errors: terms that resemble one another share an effect, so that each is small."""
 RIDGE = 0.05
-"""Of the sparse regression, as PySINDy's default."""
+"""Ridge of the sparse regression, as PySINDy's default."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ class Task:
 
 @dataclass(frozen=True)
 class Look:
-    """What each method says of one session: the larger, the surer that something acts."""
+    """Figures of each method for one session: the larger, the surer that something acts."""
 
     cause: str
     strength: float
@@ -95,7 +95,7 @@ class Look:
     energy: float
     """−ln p of the residuals' χ²: no shape is looked for."""
     neural: Answer | None = None
-    """What a network says, where one is given."""
+    """Answer of a network, where one is given."""
 
 
 def tasks(sessions: int, sound: int, seed: int) -> Iterator[Task]:
@@ -111,7 +111,7 @@ def drawn(task: Task) -> Case:
 
 
 def perform(task: Task, network: Path | None = None) -> Look | None:
-    """None where no session drawn can hold the effect."""
+    """Draws a session, diagnoses it and compares; None where no session drawn can hold the effect."""
     try:
         case = drawn(task)
     except UnhideableError:
@@ -136,7 +136,7 @@ def perform(task: Task, network: Path | None = None) -> Look | None:
 
 
 def places(state: SearchState) -> dict[str, int]:
-    """How many visible shapes each cause has."""
+    """Number of visible shapes of each cause."""
     counted: dict[str, int] = {}
     for traces in state.traces:
         counted[traces.cause.identifier] = counted.get(traces.cause.identifier, 0) + max(traces.places, 1)
@@ -149,7 +149,7 @@ def causes_of(state: SearchState, seen: Scores) -> Array:
 
 
 def family_p_values(state: SearchState, seen: Scores) -> dict[str, float]:
-    """Of each cause: the least p-value of its shapes, times their number."""
+    """Family-wise p-value of each cause: the least p-value of its shapes, times their number."""
     cause, counted = causes_of(state, seen), places(state)
     least = {c: float(seen.p_value[cause == c].min(initial=1.0)) for c in counted}
     return {c: max(min(p * counted[c], 1.0), 1e-300) for c, p in least.items()}
@@ -179,7 +179,7 @@ def sparse_threshold(state: SearchState) -> float:
 
 
 def _kept(library: Array, z: Array, cut: float) -> bool:
-    """Whether a term stays at a threshold, in standard errors."""
+    """Whether a term remains at a threshold, in standard errors."""
     chosen = np.arange(library.shape[1])
     while len(chosen):
         some = library[:, chosen]
@@ -192,13 +192,13 @@ def _kept(library: Array, z: Array, cut: float) -> bool:
 
 
 def energy(state: SearchState) -> float:
-    """How far the χ² of the residuals lies above its mean, in standard deviations."""
+    """Excess of the residuals' χ² over its mean, in standard deviations."""
     z, freedom = state.residuals.z, float(state.residuals.row_freedom.sum())
     return float((z @ z - freedom) / np.sqrt(2 * freedom))
 
 
 class Method(Protocol):
-    """What a method says of a session, where effects have a strength."""
+    """Figure of a method for a session, where effects have a strength."""
 
     def __call__(self, look: Look, strength: float) -> float: ...
 
@@ -219,7 +219,7 @@ NEURAL = "neural posterior, learned from simulated sessions"
 NETWORK = "\n## A network beside them\n"
 HEAD = ("method", "sound sessions", *(f"strength {s:g}" for s in STRENGTHS))
 Sessions = dict[float, list[Look]]
-"""Those with an effect, by its strength."""
+"""Sessions with an effect, by its strength."""
 
 
 def divided(looks: list[Look]) -> tuple[list[Look], Sessions]:
@@ -284,7 +284,7 @@ def beside_network(looks: list[Look], command: str, network: Path) -> str:
 
 
 def threshold(values: list[float], alarms: float) -> float:
-    """What so large a share of the values, of sound sessions, exceeds."""
+    """Value that so large a share of the values, of sound sessions, exceeds."""
     return [-math.inf, *sorted(values)][-1 - round(alarms * len(values))]
 
 

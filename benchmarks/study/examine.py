@@ -14,7 +14,7 @@ from tests.blind.examine import examine
 from tests.blind.score import Outcome
 
 SHARES = {"single": 0.56, "weak": 0.08, "none": 0.16, "outside": 0.1, "two": 0.1}
-"""Of the sessions of a study."""
+"""Shares of the kinds of session in a study."""
 
 
 @dataclass(frozen=True)

@@ -107,7 +107,9 @@ def perform(task: Task) -> dict[str, Any]:
 
 
 def prediction(group: Group, sessions: list[CalibrationSession], found: GroupDiagnosis) -> dict[str, float]:
-    """How well learned terms say what the effect leaves in the sessions left out of their fit, without noise."""
+    """Correlation of learned terms with the noise-free effect in the sessions left out of their fit, and the share
+    explained.
+    """
     held = [k for k in range(len(sessions)) if k % HELD_OUT == HELD_OUT - 1]
     truth, told = [], []
     for k in held:

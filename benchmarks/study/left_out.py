@@ -24,7 +24,7 @@ def tasks(sessions: int, seed: int) -> list[Task]:
 
 
 def far(outcomes: list[Outcome]) -> list[Outcome]:
-    """Those whose cause no other explanation comes near."""
+    """The outcomes whose cause no other explanation comes near."""
     return [o for o in outcomes if min(o.separations) >= FAR]
 
 

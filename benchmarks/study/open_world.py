@@ -57,7 +57,7 @@ def left_out_part(pool: Executor, sessions: int, seed: int) -> str:
 
 
 def stated_noise_part(pool: Executor, sessions: int, seed: int) -> str:
-    """So many sessions of every factor."""
+    """The section on stated noise, with ``sessions`` sessions of every factor."""
     return stated_noise.section(performed(pool, stated_noise.wishes(sessions, seed + 1), stated_noise.perform))
 
 
@@ -87,7 +87,7 @@ def parity_part(pool: Executor, sessions: int, seed: int) -> str:
 
 
 def shared_steps_part(pool: Executor, sessions: int, seed: int) -> str:
-    """So many sessions of every number of sensors and strength."""
+    """The section on shared steps, with ``sessions`` sessions of every number of sensors and strength."""
     return shared_steps.section(performed(pool, shared_steps.wishes(sessions, seed), shared_steps.perform))
 
 
@@ -101,7 +101,7 @@ PARTS: dict[str, Callable[[Executor, int, int], str]] = {
     "parity": parity_part,
     "shared-steps": shared_steps_part,
 }
-"""In the order of the page; each begins with its heading."""
+"""The parts in the order of the page; each begins with its heading."""
 
 
 def with_command(part: str, command: str) -> str:

@@ -49,7 +49,7 @@ class Tailed(np.random.Generator):
     """Draws normal deviates from Student's t, of variance one."""
 
     def standard_normal(self, size: Any = None, *_: Any, **__: Any) -> Any:
-        """Of variance one."""
+        """Deviates of variance one."""
         return self.standard_t(TAIL, size) / np.sqrt(TAIL / (TAIL - 2))
 
 
@@ -64,7 +64,7 @@ class Wish:
 
 @dataclass(frozen=True)
 class Answer:
-    """What was said of it."""
+    """The answer to one session."""
 
     wish: Wish
     other_name: bool
@@ -138,7 +138,7 @@ def in_logs(wish: Wish) -> Hidden:
 
 
 def jump_of(wish: Wish) -> frozenset[str]:
-    """What acts where it is wished."""
+    """The cause that acts, where one is wished."""
     return frozenset({"bias-jump"} if wish.hidden else ())
 
 
@@ -171,7 +171,7 @@ ONLY_SOUND = {"stand, one sensor ten times noisier"}
 
 
 def wishes(sessions: int, seed: int) -> Iterator[Wish]:
-    """So many sound sessions of every world, and a third as many with an effect."""
+    """Wishes for ``sessions`` sound sessions of every world, and a third as many with an effect."""
     for number, world in enumerate(WORLDS):
         yield from (Wish(world, False, (seed, number, 0, k)) for k in range(sessions))
         with_effect = 0 if world in ONLY_SOUND else sessions // 3

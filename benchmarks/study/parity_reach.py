@@ -1,4 +1,4 @@
-"""What may be said of a block that moves: ``python -m benchmarks.study.parity_reach --sessions 40 --seed 1``.
+"""Claims about a block that moves: ``python -m benchmarks.study.parity_reach --sessions 40 --seed 1``.
 
 Flights of `tests.blind.flight`, drawn at random: sensors up to 5 cm apart, up to a sample late, shaken or not, at rest
 for a while or never, places stated or not, gyros beside or not; every block once as it was calibrated and once with one
@@ -20,7 +20,7 @@ from tests.builders import gyro_block, true_sensors
 
 KINDS = ("bias", "scale", "axis")
 SECONDS = {True: 180.0, False: 120.0}
-"""With rest and without: shorter than a flight, longer than what parity needs."""
+"""Length with rest and without, s: shorter than a flight, longer than what parity needs."""
 COARSE = 4.0
 """Rounds of the Earth's rate in a count, in pulses: as coarse as the quantisation shows."""
 
@@ -34,7 +34,7 @@ class Flown:
     sensor: str
     kind: str
     changed: ParityResult | None
-    """None where no size is stated from which on the change is told."""
+    """Result for the changed sensor; None where no size is stated from which on the change is named."""
     size: float | None
 
 
@@ -61,7 +61,7 @@ def checked(block: Block, setting: Setting, known: Calibration, rng: np.random.G
 
 
 def said(result: ParityResult) -> str:
-    """In a word."""
+    """The result in a word."""
     if result.isolated:
         return "named"
     if result.detected:
@@ -70,7 +70,7 @@ def said(result: ParityResult) -> str:
 
 
 def reach(flights: list[Flown]) -> str:
-    """What was said of sound and of changed blocks, by what the recording holds."""
+    """Table of the results for sound and for changed blocks, by the recording's content."""
     rows = []
     for rest in (True, False):
         for stated in (True, False):
@@ -109,7 +109,7 @@ def _counted(some: list[Flown]) -> Iterator[object]:
 
 
 def targets(flights: list[Flown]) -> str:
-    """What is asked of sound and of changed blocks, whatever the recording holds."""
+    """Targets for sound and for changed blocks, whatever the recording holds."""
     changed = [(f.changed.isolated, f.sensor) for f in flights if f.changed is not None]
     rows = [
         ("a sound block that moves: a sensor named", "≤ 1 %", rate([said(f.sound) == "named" for f in flights])),
@@ -142,7 +142,7 @@ def counted(sessions: int, seed: int) -> str:
 
 
 def _stand_p_value(runs_on: bool, counter: str | None, seed: int) -> float:
-    """Of one session whose only noise is the counting."""
+    """p-value of one session whose only noise is the counting."""
     rng = np.random.default_rng(seed)
     scale = COARSE / (7.292115e-5 * 100.0)
     document = gyro_block(sensors=true_sensors(6, prefix="G", scale=scale, bias=1e-5, tilt=1e-3, seed=seed), se=1e-9)

@@ -8,7 +8,7 @@ Z = 1.96
 
 @dataclass(frozen=True)
 class Rate:
-    """So many of so many."""
+    """A number of hits among trials."""
 
     hits: int
     trials: int

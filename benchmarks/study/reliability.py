@@ -15,7 +15,7 @@ from tests.blind.score import Outcome
 
 BINS = 10
 DRAWS = 2000
-"""Of truths as the statements say, for the error that chance makes: their mean to some per cent."""
+"""Draws of truths from the stated probabilities, for the error that chance makes: their mean to some per cent."""
 PLAIN = 0.01
 """Below it, and above one less it, a cause is as good as ruled out or sure."""
 
@@ -53,7 +53,7 @@ def section(outcomes: list[Outcome]) -> str:
 
 
 def binned(stated: list[tuple[float, bool]]) -> list[tuple[float, list[bool]]]:
-    """For every tenth the mean probability stated, and whether each was true."""
+    """Mean stated probability in every tenth, and whether each statement was true."""
     place = np.minimum(np.array([p for p, _ in stated]) * BINS, BINS - 1).astype(int)
     found = []
     for k in range(BINS):

@@ -44,7 +44,7 @@ def table(head: Iterable[str], rows: Iterable[Iterable[object]]) -> str:
 
 
 def of_kind(outcomes: list[Outcome], kind: str) -> list[Outcome]:
-    """Those of one kind."""
+    """The outcomes of one kind."""
     return [o for o in outcomes if o.kind == kind]
 
 
@@ -55,7 +55,7 @@ def mean(values: Iterable[float]) -> str:
 
 
 def pulls_inside(outcomes: list[Outcome]) -> list[bool]:
-    """For every amplitude of a single effect whether it is within two of its own sigma."""
+    """Whether each amplitude of a single effect is within two of its own sigma."""
     return [abs(p.value) <= 2 for o in of_kind(outcomes, "single") for p in o.pulls]
 
 
@@ -97,7 +97,7 @@ def _by_cause(outcomes: list[Outcome]) -> str:
 
 
 def named(outcome: Outcome) -> str:
-    """What the first finding says, with a star where only the sensor is wrong."""
+    """The cause of the first finding, marked where only the sensor is wrong."""
     if not outcome.findings:
         return "unexplained" if outcome.unexplained else "nothing"
     cause = outcome.findings[0].split("@")[0]

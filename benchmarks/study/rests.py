@@ -20,16 +20,19 @@ RATE = 50.0
 SETTLES = 1.0
 """Seconds in which what a turn left becomes less by e."""
 SHAKEN = 3.0
-"""By which a turn leaves a zero off where a rest begins, in noises of a sample, one sigma: it shows in most rests."""
+"""One sigma of the offset that a turn leaves on a zero where a rest begins, in noises of a sample: it shows in most
+rests.
+"""
 SCATTER = 8.8
-"""Of the means of such rests about the truth, in standard errors of the rows that they were made of: these, as much
-white noise of samples, and 8.7 that settles."""
+"""Scatter of the means of such rests about the truth, in standard errors of the rows that they were made of: these, as
+much white noise of samples, and 8.7 that settles.
+"""
 
 Document = dict[str, Any]
 
 
 def copied(session: Document) -> Document:
-    """To be changed."""
+    """A copy that may be changed."""
     return dict(json.loads(json.dumps(session)))
 
 
@@ -61,7 +64,7 @@ def with_gyros(session: Document, rng: np.random.Generator) -> Document:
 
 
 def settling(session: Document, rng: np.random.Generator) -> Document:
-    """Its means as a log of rests: each turn leaves every zero off by another amount, which settles.
+    """The session's means as a log of rests: each turn leaves every zero off by another amount, which settles.
 
     White noise of a sample is such that it makes a mean as uncertain as the row was.
     """

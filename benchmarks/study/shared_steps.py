@@ -22,7 +22,7 @@ SOUND = {"stand, 6 accelerometers": 75, "orientations, 6 accelerometers": 25}
 APART = 8
 """Times as many in which every sensor steps at a row of its own, and of each other thing that is no shared step."""
 SHARED = "at one moment"
-"""What the sentence of an event says."""
+"""Words in the sentence of an event."""
 
 UNLIKE = {
     WALKS: f"every zero walks by itself, strength {OTHER:g} each: called one event",
@@ -44,18 +44,18 @@ class Wish:
 
     block: Block
     strength: float
-    """Of each sensor, standard errors; of all together where `together`."""
+    """Strength of each sensor, standard errors; of all together where `together`."""
     count: int
     seed: tuple[int, ...]
     together: bool = False
     apart: bool = False
     other: str = ""
-    """What acts that is no step."""
+    """An acting cause that is no step."""
 
 
 @dataclass(frozen=True)
 class Answer:
-    """What was said of it."""
+    """The answer to one session."""
 
     wish: Wish
     right: bool
@@ -68,7 +68,7 @@ class Answer:
 
 
 def wishes(sessions: int, seed: int) -> Iterator[Wish]:
-    """So many sessions of every number of sensors and strength; sound ones, and steps apart."""
+    """Wishes for ``sessions`` sessions of every number of sensors and strength; for sound ones, and steps apart."""
     stand, orientations = BLOCKS[0], BLOCKS[2]
     kinds = [(stand, s, False) for s in STRENGTHS] + [(stand, TOGETHER, True), (orientations, STRENGTHS[-1], False)]
     kinds += [(stand, LARGE, False), (orientations, LARGE, False)]

@@ -1,4 +1,4 @@
-"""What is named when the standard errors in the file are wrong, of one sensor, some or all, too large or too small."""
+"""Names given when the standard errors in the file are wrong, of one sensor, some or all, too large or too small."""
 
 import json
 from collections.abc import Iterator
@@ -45,7 +45,7 @@ class Wish:
 
 @dataclass(frozen=True)
 class Answer:
-    """What was said of it."""
+    """The answer to one session."""
 
     wish: Wish
     other_name: bool
@@ -58,7 +58,7 @@ class Answer:
 
 
 def wishes(sessions: int, seed: int) -> Iterator[Wish]:
-    """So many sessions of every kind with an effect, and more sound ones."""
+    """Wishes for ``sessions`` sessions of every kind with an effect, and for more sound ones."""
     kinds = list(product(FACTORS, WHO, (False, True)))
     for k, (factor, who, hidden) in product(range(SOUND * sessions), kinds):
         if hidden and k >= sessions:

@@ -33,7 +33,7 @@ ORIENTATIONS = 24
 
 @dataclass(frozen=True)
 class Programme:
-    """What is measured."""
+    """A programme to measure."""
 
     name: str
     accelerometers: int = 0
@@ -62,7 +62,7 @@ PROGRAMMES = (
 
 @dataclass(frozen=True)
 class Wish:
-    """What a pair is to hold."""
+    """Wished content of a pair."""
 
     programme: Programme
     degrees: float
@@ -171,7 +171,7 @@ def _still(
 
 
 def _drift(wish: Wish, world: Session, rng: np.random.Generator) -> Effect:
-    """Of one sensor, as strong as wished beside a turn of the block that is left open."""
+    """A drift of one sensor, as strong as wished beside a turn of the block that is left open."""
     if not wish.programme.stand:
         return _drift_at_rest(wish, world, rng)
     free = effect_columns(world, Effect("remount-rotation", (1e-4, 1e-4, 1e-4)))
@@ -180,7 +180,9 @@ def _drift(wish: Wish, world: Session, rng: np.random.Generator) -> Effect:
 
 
 def _drift_at_rest(wish: Wish, world: Session, rng: np.random.Generator) -> Effect:
-    """The same in arbitrary orientations, both sessions like one drawn here; the common turn of the axes left open."""
+    """A drift of one sensor, as strong as wished, in arbitrary orientations, both sessions like one drawn here; the
+    common turn of the axes left open.
+    """
     up = rng.standard_normal((ORIENTATIONS, 3))
     up /= np.linalg.norm(up, axis=1, keepdims=True)
     told = _information(world, up, STATED if wish.programme.stated else np.inf)

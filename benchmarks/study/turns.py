@@ -21,7 +21,7 @@ from service.types.rules import ACCELEROMETER_DEFAULTS, GYROSCOPE_DEFAULTS
 
 DEGREES = (0.01, 0.1, 0.5, 1.0, 2.0, 5.0)
 DRIFT_DEGREES = (0.0, 1.0, 5.0)
-"""Of pairs with a drift: none, for what the drift alone is called."""
+"""Turns of pairs with a drift, degrees: none, to see what the drift alone is called."""
 STRENGTH = 12.0
 NAMES = tuple(programme.name for programme in PROGRAMMES)
 BAD = (Verdict.FAIL, Verdict.CONDITIONAL_FAIL)
@@ -29,7 +29,7 @@ BAD = (Verdict.FAIL, Verdict.CONDITIONAL_FAIL)
 
 @dataclass(frozen=True)
 class Turned:
-    """What was said of one pair."""
+    """The answers to one pair."""
 
     wish: Wish
     drifts: tuple[str, ...]
@@ -43,7 +43,7 @@ class Turned:
     verdict: Verdict
     remount: bool
     inside: tuple[bool, ...]
-    """Of each component of the turn, whether it lies within two of its sigmas."""
+    """Whether each component of the turn lies within two of its sigmas."""
     drifted: str | None
 
 
@@ -85,7 +85,7 @@ def moved(pair: Pair) -> tuple[tuple[str, ...], Verdict]:
 
 @dataclass(frozen=True)
 class Flipped:
-    """What was said of one session whose block sat turned in its flipped run."""
+    """The answer to one session whose block sat turned in its flipped run."""
 
     programme: str
     degrees: float
@@ -155,7 +155,7 @@ def page(found: list[Turned]) -> str:
 
 
 def _targets(sound: list[Turned]) -> str:
-    """What is asked where no sensor changed, histories of one mounting and of three together."""
+    """Targets where no sensor changed, for histories of one mounting and of three together."""
     wrong = rate([bool(f.drifts or f.judged) for f in sound])
     row = ("no sensor changed, turned by up to 5°: a drift named or a sensor judged as moved", "≤ 1 %", wrong)
     return table(("figure", "target", "measured"), [row])

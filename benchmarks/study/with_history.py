@@ -28,17 +28,17 @@ class Told:
     """One unit."""
 
     alone: bool
-    """Whether the twelfth names it without a history."""
+    """Whether the twelfth session names it without a history."""
     named: bool
-    """Whether it names it, or lists it, with one."""
+    """Whether the twelfth session names it, or lists it, with a history."""
     strength: float
-    """Of the twelfth, standard errors."""
+    """Strength in the twelfth session, standard errors."""
     ended: bool
-    """Whether it names it as lasting once it has ended."""
+    """Whether the twelfth session names it as lasting once it has ended."""
     sound: bool
-    """Whether the twelfth of a unit without an effect names anything that only several sessions show."""
+    """Whether the twelfth session of a unit without an effect names anything that only several sessions show."""
     by_itself: bool
-    """Whether that one names anything else."""
+    """Whether that session names anything else."""
 
 
 def perform(seed: tuple[int, ...]) -> Told:
@@ -68,7 +68,7 @@ def of_last(group: Group) -> Diagnosis:
 
 
 def names(found: Diagnosis, cause: str, sensors: Sequence[str]) -> bool:
-    """Whether a cause is named where it is, or listed."""
+    """Whether a cause is named at its place, or listed."""
     return any(cause in (f.cause, *f.alternatives) and set(sensors) <= set(f.sensors) for f in found.findings)
 
 

@@ -16,7 +16,7 @@ from benchmarks.tails.forecasts import Told, missed, surprised, tailed, told
 
 PAGE = RESULTS / "health" / "tails.md"
 FREEDOM = 4.0
-"""Of Student's law: one error in two hundred is beyond four of its standard deviations."""
+"""Degrees of freedom of Student's law: one error in two hundred is beyond four of its standard deviations."""
 NAMES = ("errors taken for normal", "sessions weighed", "weighed, λ missing")
 SHORT = 12
 """Types with stated dates for one with due dates, of every number of sessions."""
@@ -24,7 +24,7 @@ SHORT = 12
 
 @dataclass(frozen=True)
 class Case:
-    """What one generator with one law of errors gave."""
+    """Results of one generator with one law of errors."""
 
     world: World
     name: str
@@ -33,7 +33,7 @@ class Case:
 
     @property
     def dates(self) -> list[Reached]:
-        """Of all histories."""
+        """Dates of all histories."""
         return [one.dates for one in self.told]
 
 

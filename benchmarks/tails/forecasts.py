@@ -21,7 +21,7 @@ from estimator.health.shapes import DRIFTS, courses
 
 @dataclass(frozen=True)
 class Level:
-    """Where a parameter is said to be, T."""
+    """Stated level of a parameter, T."""
 
     error: float
     sigma: float
@@ -36,7 +36,7 @@ class Told:
 
 
 def told(world: World, types: int, rng: np.random.Generator) -> list[Told]:
-    """Of types as in the back-test: three units of each kind, and more of the drift that begins some day."""
+    """Results for types as in the back-test: three units of each kind, and more of the drift that begins some day."""
     found, late = list[Told](), world.planned(DATED, since=SINCE)
     for _ in range(types):
         units = [mixed(world, i, rng) for i in range(3 * len(world.kinds))]
@@ -83,10 +83,10 @@ def tailed(world: World, freedom: float) -> World:
 
 
 def surprised(found: Sequence[Told], whose: int) -> list[bool]:
-    """Of each level whether it is further out than twice its stated uncertainty."""
+    """Whether each level is further out than twice its stated uncertainty."""
     return [abs(one.levels[whose].error) > 2 * one.levels[whose].sigma for one in found]
 
 
 def missed(found: Sequence[Told], whose: int) -> float:
-    """T, the median of what levels are wrong by."""
+    """Median error of the levels, T."""
     return float(np.median([abs(one.levels[whose].error) for one in found]))

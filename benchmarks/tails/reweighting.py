@@ -30,13 +30,15 @@ from estimator.health.shapes import Shapes
 from estimator.session import Array
 
 ROUNDS = 2
-"""Of both laws in turn; more are dearer than the forecast may become."""
+"""Rounds of both laws in turn; more are dearer than the forecast may become."""
 FELT = 0.01
 """Chance of tails below which normal errors are as good."""
 
 
 def reweighted(readings: Readings, family: Shapes, prior: Prior, *, is_missing: bool) -> Readings:
-    """With the standard uncertainties that the sessions are worth, T; whether λ is counted as missing."""
+    """The readings with the effective standard uncertainties of the sessions, T; ``is_missing``: whether λ is counted
+    as missing.
+    """
     if prior.tails[1:].sum() < FELT:
         return readings
     worth = readings

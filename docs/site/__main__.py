@@ -16,11 +16,11 @@ PROJECT = Path(__file__).parents[2]
 BUILD = PROJECT / "build"
 SOURCE, SITE = BUILD / "docs-source", BUILD / "docs"
 SHIM = re.compile(r'https://[^"\s]+/iframe-worker/shim')
-"""What the generator would fetch from elsewhere, for a search without a server; ours is used instead."""
+"""Script that the generator would fetch from elsewhere, for a search without a server; ours is used instead."""
 ELSEWHERE = re.compile(
     r'<(?:script|img|iframe|source)\b[^>]*\bsrc="https?:|<link\b[^>]*\brel="stylesheet"[^>]*"https?:'
 )
-"""What a page would fetch from elsewhere while it is looked at."""
+"""Resources that a page would fetch from elsewhere while it is looked at."""
 
 
 def main() -> None:

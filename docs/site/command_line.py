@@ -68,7 +68,7 @@ def _table(what: str, found: list[Command]) -> Iterator[str]:
 
 
 def _default(one: Command) -> str:
-    """What holds without it, as the help says it."""
+    """The default of an option, as the help shows it."""
     if one.required:
         return "needed"
     if isinstance(one.show_default, str):

@@ -13,7 +13,7 @@ UNDERLINED = re.compile(r"^(\S.*)\n-{3,}$", re.MULTILINE)
 
 
 def python_page(package: ModuleType) -> str:
-    """What the package says of itself, then every public name."""
+    """The docstring of the package, then every public name."""
     names = [line for name in package.__all__ for line in _name(name, getattr(package, name))]
     return "\n".join([f"```text\n{inspect.getdoc(package)}\n```\n", *names])
 
@@ -55,7 +55,7 @@ def _fields(node: ast.ClassDef) -> Iterator[tuple[str, str, str]]:
 
 
 def _signature(node: ast.FunctionDef, *, is_property: bool = False) -> str:
-    """On one line, or one argument a line where that is long."""
+    """The signature on one line, or with one argument a line where that is long."""
     answer = f" -> {ast.unparse(node.returns)}" if node.returns else ""
     if is_property:
         return f"{node.name}{answer.replace(' -> ', ': ')}"

@@ -15,7 +15,7 @@ MADE = "\n\n*Made from the code by `make docs`.*\n\n"
 
 
 def reference_pages() -> dict[str, tuple[str, str]]:
-    """By path: the line of the index, and the text."""
+    """The line of the index and the text of every page, by path."""
     with tempfile.TemporaryDirectory() as folder:
         described = create_app(Settings(data_folder=Path(folder))).openapi()
     return {

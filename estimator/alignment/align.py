@@ -47,15 +47,15 @@ class Record:
     """A turntable session, reduced to three axes and checked, from the first stop on. R rows."""
 
     session: CalibrationSession
-    """Without what accelerometers at stated positions feel of the turns."""
+    """The session without the accelerations that accelerometers at stated positions feel in the turns."""
     first: int
     """Row of the session at which the first stop begins."""
     motion: BlockMotion
-    """As the sensors say, before any bias is taken off."""
+    """Motion of the block as the sensors measure it, before any bias is taken off."""
     per_step: int
     """Rows of a filter step."""
     angle: Array
-    """(R,) of the table, rad."""
+    """(R,) angle of the table, rad."""
     stops: list[Stop]
     noise: FilterNoise
 
@@ -132,10 +132,10 @@ def prepared(session: CalibrationSession, mounting: tuple[float, float] = (0.0, 
 
 
 def _noise(stationary: list[Stop], gyros: Triad, accelerometers: Triad, row: float, per_step: int) -> FilterNoise:
-    """As the file states it for single rows, else from the readings at the stops."""
+    """Noise of the filter's measurements: as the file states it for single rows, else from the stops' readings."""
 
     def means(values: Array) -> list[Array]:
-        """Of each stop the means (k, 3) over filter steps of values (R, 3), m/s² or rad/s."""
+        """The means (k, 3) of each stop over filter steps of values (R, 3), m/s² or rad/s."""
         parts = [values[stop.first : stop.last] for stop in stationary]
         return [part[: len(part) // per_step * per_step].reshape(-1, per_step, 3).mean(axis=1) for part in parts]
 
@@ -236,7 +236,7 @@ def _totals(estimates: Array, start: Coarse) -> Array:
 
 
 def _fit(record: Record, filtered: Filtered) -> Fit:
-    """How well the innovations agree with their covariance, and what is known least."""
+    """Consistency of the innovations with their covariance, and the least known state."""
     n = len(filtered.last.x)
     values, vectors = eigh(relative(filtered.last.P)[2:13, 2:13])
     dof = filtered.measured - n

@@ -17,7 +17,7 @@ from estimator.results import Calibration, Estimate, Residuals, SensorCalibratio
 from estimator.session import ACCELEROMETER, GYROSCOPE, Array
 
 NOTHING = Estimate(None, None)
-"""Of a parameter that the programme does not speak of."""
+"""Estimate of a parameter that the programme does not determine."""
 MOST_ROWS = 120
 """Rows of innovations that are kept as residuals: enough for a chart, few enough to store."""
 SETTLED = 10.0
@@ -42,9 +42,9 @@ AXES = (
     Axis("gyro y", GYROSCOPE, {"bias": "eps_y", "misalignment": "E_yz"}),
     Axis("gyro z", GYROSCOPE, {"scale": "kappa_z", "bias": "eps_z"}),
 )
-"""What takes the place of sensors; a rate table has the gyros alone."""
+"""The axes that take the place of sensors; a rate table has the gyros alone."""
 UNITS = {(ACCELEROMETER, "bias"): "m/s²", (GYROSCOPE, "bias"): "rad/s", (GYROSCOPE, "misalignment"): "rad"}
-"""Of a parameter of an axis; a scale, 1 + κ, has none."""
+"""Units of the parameters of an axis; a scale, 1 + κ, has none."""
 
 
 def alignment_calibration(result: AlignmentResult, rows: NDArray[np.bool_] | None = None) -> Calibration:

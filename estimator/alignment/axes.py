@@ -27,7 +27,7 @@ class Triad:
     row_covariance: Array | None
     """(3, 3) covariance of a row's white noise as the file states it; None when it does not."""
     sensors: int
-    """How many were reduced."""
+    """Number of sensors that were reduced."""
 
 
 def reduction(axes: Array, covariance: Array) -> tuple[Array, Array]:

@@ -24,7 +24,7 @@ Beyond it sin φ is no longer φ to a per cent."""
 
 @dataclass(frozen=True, eq=False)
 class Coarse:
-    """Where the filter starts."""
+    """Starting values of the filter."""
 
     attitude: Array
     """(3, 3) C̃ at the first row, block → east-north-up, dimensionless."""

@@ -24,22 +24,22 @@ from estimator.session import Array
 
 @dataclass(frozen=True, eq=False)
 class KalmanState:
-    """What a filter knows of n states, each in its own unit."""
+    """Estimate of n states with its covariance, each state in its own unit."""
 
     x: Array
     """(n,) estimate."""
     P: Array
-    """(n, n) its covariance."""
+    """(n, n) covariance of the estimate."""
 
 
 @dataclass(frozen=True, eq=False)
 class Innovation:
-    """What a measurement of k components, each in its own unit, said beyond what was expected."""
+    """Innovation of a measurement of k components, each in its own unit."""
 
     value: Array
     """(k,) ν."""
     covariance: Array
-    """(k, k) S, that ν should have."""
+    """(k, k) S, the expected covariance of ν."""
 
     @property
     def chi2(self) -> float:
@@ -89,7 +89,7 @@ end of a stop does not repeat its beginning exactly."""
 
 @dataclass(frozen=True, eq=False)
 class FilterSetting:
-    """What the filter knows besides the path."""
+    """Settings of the filter, apart from the path."""
 
     latitude: float
     gravity: float
@@ -104,7 +104,7 @@ class FilterSetting:
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """What is measured at every step. K steps."""
+    """The measurements of every step. K steps."""
 
     velocity: Array
     """(K, 2) m/s."""
@@ -121,7 +121,7 @@ class Filtered:
     sigmas: Array
     """(K, n) SI, one sigma."""
     innovations: Array
-    """(K, 2) of the velocity, m/s."""
+    """(K, 2) innovations of the velocity, m/s."""
     innovation_sigmas: Array
     """(K, 2) m/s."""
     last: KalmanState

@@ -1,4 +1,4 @@
-"""How well turns are predicted that took no part in the fit, without lever arms and with them.
+"""Prediction of turns that took no part in the fit, with lever arms and without them.
 
 Every turn is held out once; of a single turn every fifth piece or so. The rest, with the stops, fits k, p, q and, for
 sensors whose lever arm is named, c and d. Prediction is with full covariance, the lean that pieces of a turn share
@@ -25,12 +25,12 @@ FOLDS = 10
 
 @dataclass(frozen=True)
 class HeldOutPrediction:
-    """Of the pieces of all turns."""
+    """Prediction errors over the pieces of all turns."""
 
     rms: float
     """m/s²."""
     chi2: float
-    """Of a piece."""
+    """Mean χ² of a piece."""
     log_score: float
     """Mean log density of a piece, in units of its own sigma."""
     rms_by_sensor: dict[str, float]
@@ -38,12 +38,12 @@ class HeldOutPrediction:
 
 
 def held_out(arms: LeverArms) -> str:
-    """What is held out, in words."""
+    """The held-out parts, in words."""
     return "turns" if arms.pieces.turn.max() > 0 else "parts of the turn"
 
 
 def prediction(arms: LeverArms, *, named: bool) -> HeldOutPrediction:
-    """Of all turns; ``named``: with the named lever arms in the model."""
+    """Predicts every turn by a fit to the others; ``named``: with the named lever arms in the model."""
     parts = arms.pieces
     scores, rms = [], {}
     for arm in arms.estimates:
@@ -55,7 +55,7 @@ def prediction(arms: LeverArms, *, named: bool) -> HeldOutPrediction:
 
 
 def root_mean_square(errors: Array) -> float:
-    """Of errors (n,), m/s²."""
+    """Root mean square of errors (n,), m/s²."""
     return float(np.sqrt(np.mean(errors**2)))
 
 

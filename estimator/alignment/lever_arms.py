@@ -1,4 +1,4 @@
-"""Where accelerometers stand from the turn axis, which of them surely do, and what it is worth to know it.
+"""Lever arms of the accelerometers from the turn axis: their size, which of them are certain, and the benefit.
 
 A sensor is named where the turns move it significantly, over all sensors together, and no rival does as well; a rival
 within 9 of it in χ², its columns paid for, stands beside the name. Where rivals add to the lever arm, its uncertainty
@@ -42,9 +42,9 @@ class FittedLeverArm:
     response: LeverResponse
     named: bool
     rivals: tuple[str, ...]
-    """Of `RIVALS`: what does as well."""
+    """The rivals, of `RIVALS`, that explain the readings as well."""
     more: float
-    """Probability of what else the turns do to it, where they do nothing else; 1 where the lever arm is not named."""
+    """Chance of further effects of the turns as large where there are none; 1 where the lever arm is not named."""
     other: str
     """The rival that fits instead, far better; empty where none does."""
 
@@ -58,23 +58,24 @@ class FittedLeverArm:
 
 @dataclass(frozen=True, eq=False)
 class LeverArms:
-    """Of a session."""
+    """The lever arms of a session."""
 
     estimates: tuple[FittedLeverArm, ...]
     """Every accelerometer whose lever arm shows."""
     upright: tuple[str, ...]
-    """Accelerometers along the turn axis, whose lever arm does not."""
+    """Accelerometers along the turn axis, whose lever arm cannot be seen."""
     origin: tuple[Array, Array] | None
-    """Where the origin of the stated positions lies from the turn axis, (2,) m, and covariance (2, 2); None where the
-    file states none or they contradict the turns altogether."""
+    """Position of the origin of the stated positions relative to the turn axis, (2,) m, and covariance (2, 2); None
+    where the file states no positions or they contradict the turns altogether.
+    """
     stated: bool
     pieces: Pieces
     lean: float
-    """One sigma of what the axis' lean adds across it, m/s²."""
+    """One sigma of the acceleration that the axis' lean adds across it, m/s²."""
 
     @property
     def named(self) -> tuple[FittedLeverArm, ...]:
-        """Those that surely stand away."""
+        """The sensors that are certainly off the turn axis."""
         return tuple(arm for arm in self.estimates if arm.named)
 
 
@@ -123,7 +124,7 @@ def _origin(responses: Sequence[LeverResponse], sensors: Sequence[Sensor]) -> tu
 
 
 def _shared(responses: Sequence[LeverResponse], sensors: Sequence[Sensor]) -> tuple[float, tuple[Array, Array]]:
-    """How likely the lever arms are to differ as much where they are one; that one and its covariance."""
+    """Probability that lever arms of one length scatter as much, then that length (2,), m, and its covariance."""
     information, weighted, square = np.zeros((2, 2)), np.zeros(2), 0.0
     for response in responses:
         place, covariance = _place(response, sensors[response.sensor])
@@ -146,7 +147,7 @@ def _place(response: LeverResponse, sensor: Sensor) -> tuple[Array, Array]:
 
 
 def _judged(response: LeverResponse, sensor: Sensor, count: int, level: float) -> FittedLeverArm:
-    """Whether the lever arm is named, and what stands beside it; ``count``: of pieces."""
+    """Decides whether a lever arm is named, and with which rivals; ``count``: number of pieces."""
     worth = {rival: response.worth(rival, count) for rival in RIVALS}
     evidence, best = response.worth("lever arm", count), max(worth, key=lambda rival: worth[rival])
     beaten = worth[best] > evidence + DECISIVE

@@ -1,4 +1,4 @@
-"""What accelerometers feel that stand away from the turn axis, and how a row's turning is averaged.
+"""Accelerations that accelerometers off the turn axis feel, and the mean rate of turn over each row.
 
 A sensor with input axis a at position r from the turn axis (block axes, Z the turn axis) feels, while the table turns
 at ω with the angular acceleration α, besides gravity
@@ -39,7 +39,7 @@ turn axis may lean."""
 
 @dataclass(frozen=True, eq=False)
 class Turning:
-    """How the block turned in every row. R rows."""
+    """Rotation of the block in every row. R rows."""
 
     rate: Array
     """(R,) ⟨ω⟩, rad/s."""
@@ -52,12 +52,12 @@ class Turning:
 
     @property
     def columns(self) -> Array:
-        """(R, 2) what c and d of one metre add to a row, m/s²."""
+        """(R, 2) contributions of one metre of c and of d to each row, m/s²."""
         return np.column_stack([-self.square, self.faster])
 
 
 def turning(rate: Array, row: float) -> Turning:
-    """How a block turned whose mean rates about Z over rows of ``row`` s are (R,), rad/s."""
+    """The turning of a block whose mean rates about Z over rows of ``row`` s are (R,), rad/s."""
     ends = np.concatenate([rate[:1], 0.5 * (rate[1:] + rate[:-1]), rate[-1:]])
     before, after = ends[:-1], ends[1:]
     spread = np.square(after - before) / 12

@@ -1,4 +1,4 @@
-"""What every accelerometer reads at the stops and, piece by piece, while the table turns.
+"""Readings of every accelerometer at the stops and, piece by piece, while the table turns.
 
 The turn axis keeps its direction, so a sensor that the turn does nothing to reads k + p·cos θ + q·sin θ, whatever the
 lean of axis, block and sensor. A stop is one piece; a turn is cut where its rate is known (`levers`), so that what
@@ -34,7 +34,7 @@ class Pieces:
     level: Array
     """(N, 3) mean of 1, cos θ, sin θ, dimensionless."""
     levers: Array
-    """(N, 2) what c and d of one metre add, m/s² (`levers`)."""
+    """(N, 2) contributions of one metre of c and of d, m/s² (`levers`)."""
     rate: Array
     """(N,) mean turn rate, rad/s."""
     twice: Array
@@ -50,7 +50,7 @@ class Pieces:
     bend: Array
     """(N,) rad by which the mean angle may be off, because the rate bends within rows."""
     density: Array
-    """(m,) of the white noise at the stops, (m/s²)²/Hz."""
+    """(m,) density of the white noise at the stops, (m/s²)²/Hz."""
 
     @property
     def turns(self) -> Array:

@@ -24,8 +24,9 @@ FEWEST_ROWS = 10
 LEAST_SEPARATION = np.radians(20.0)
 """rad between stops that count as different positions: closer ones hardly tell biases from the level and north."""
 DISAGREEMENT = (np.radians(1.0), 0.02)
-"""How far the gyros may disagree with the table over a turn, rad, and part of the turn: beyond bias and scale of any
-gyro that can align; a wrong sign or unit is far more."""
+"""Largest disagreement between gyros and table over a turn, rad, and as a part of the turn: beyond bias and scale of
+any gyro that can align; a wrong sign or unit is far more.
+"""
 MOVING = np.radians(0.1)
 """rad/s of the block, averaged over a second, from which it does not stand still: 24 times the Earth's rate."""
 STEEPEST = np.radians(3.0)
@@ -83,7 +84,7 @@ def interval(session: CalibrationSession) -> float:
 
 
 def stops(angle: Array, row: float) -> list[Stop]:
-    """Where the table stands for `SHORTEST` or longer.
+    """Stretches in which the table stands for `SHORTEST` or longer.
 
     Parameters
     ----------

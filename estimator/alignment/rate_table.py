@@ -31,7 +31,7 @@ from estimator.wording import counted
 
 NAMES = ("E_xz", "E_yz", "kappa_z", "eps_x", "eps_y", "eps_z")
 UNITS = ("rad", "rad", "1", "rad/s", "rad/s", "rad/s")
-"""What a rate table determines, in the order of its covariance."""
+"""Units of the quantities that a rate table determines, in the order of its covariance."""
 FEWEST_TURNS = 6
 """Whole turns in all; fewer leave no scatter to take the uncertainty from."""
 WHOLE = 1e-6
@@ -54,7 +54,7 @@ class WholeTurns:
     rates: Array
     """(T,) rad/s, of the table."""
     means: Array
-    """(T, 3) of the gyros, block axes, rad/s."""
+    """(T, 3) mean rates of the gyros, block axes, rad/s."""
     times: Array
     """(T,) middle, s."""
     rows: Array
@@ -93,7 +93,7 @@ def rate_table(session: CalibrationSession) -> RateTableResult:
 
 
 def without_gross_rows(session: CalibrationSession, row: float) -> tuple[CalibrationSession, Array]:
-    """The session, rows of ``row`` s, with what was expected in place of gross readings, which `set_aside` names; and
+    """The session, rows of ``row`` s, with predictions in place of gross readings, which `set_aside` names; and
     (R,) bool whether every reading of a row was measured."""
     assert session.turn_rate is not None
     azimuth = row * (np.cumsum(session.turn_rate) - session.turn_rate / 2)

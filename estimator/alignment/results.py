@@ -1,4 +1,4 @@
-"""What an alignment and a rate table tell; no algorithms. Units: see the package page."""
+"""Results of an alignment and of a rate table; no algorithms. Units: see the package page."""
 
 from dataclasses import dataclass
 
@@ -11,7 +11,7 @@ from estimator.session import Array, SetAside
 
 @dataclass(frozen=True, eq=False)
 class AlignmentCourse:
-    """How the estimates came about. K steps, n states."""
+    """The estimates through time. K steps, n states."""
 
     time: Array
     """(K,) s since the first stop began, at the end of each step."""
@@ -22,9 +22,9 @@ class AlignmentCourse:
     attitude: Array
     """(K, 3, 3) computed attitude C̃, block → east-north-up; the truth is about (I + φ×)·C̃."""
     innovations: Array
-    """(K, 2) of the velocity, east and north, m/s."""
+    """(K, 2) innovations of the velocity, east and north, m/s."""
     innovation_sigmas: Array
-    """(K, 2) m/s."""
+    """(K, 2) their expected one sigma, m/s."""
     stop: Array
     """(K,) number of the stop that ends with this step, −1 for all other steps."""
 
@@ -40,7 +40,7 @@ class Listed(
     name: str
     unit: str
     observable: bool | None = None
-    """None where this is not asked."""
+    """Whether the session determines it well enough; None where observability is not reported."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +67,7 @@ class AlignmentResult(
     covariance: Array
     """(n, n) SI."""
     observable: dict[str, bool]
-    """Of φ, ε, ∇, E, κ: whether the session determines it well enough to be of use."""
+    """Whether the session determines the state well enough to be of use, for φ, ε, ∇, E, κ."""
     attitude: Array
     """(3, 3) C, block → east-north-up, at the end, corrected by φ."""
     positions: tuple[float, ...]
@@ -84,7 +84,7 @@ class AlignmentResult(
 
     @property
     def parameters(self) -> tuple[Listed, ...]:
-        """Those for which observability is reported."""
+        """The states for which observability is reported."""
         return tuple(
             Listed(**vars(self.parameter(name)), name=name, unit=unit, observable=self.observable[name])
             for name, unit in zip(self.names, self.units, strict=True)
@@ -112,9 +112,9 @@ class RateTableResult(
     """E_xz, E_yz, kappa_z, eps_x, eps_y, eps_z."""
     units: tuple[str, ...]
     estimate: Array
-    """(6,) in `units`; NaN for what is not known."""
+    """(6,) estimated values in `units`; NaN for what is not known."""
     covariance: Array
-    """(6, 6) in `units`; NaN rows and columns for what is not known."""
+    """(6, 6) covariance in `units`; NaN rows and columns for what is not known."""
     turn_rates: Array
     """(T,) rate of the table in every whole turn, rad/s."""
     turn_times: Array

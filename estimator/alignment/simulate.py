@@ -26,7 +26,7 @@ from estimator.session import (
 
 @dataclass(frozen=True)
 class TurntableProgramme:
-    """How a turntable is run."""
+    """Stops and turns of a turntable."""
 
     angles: tuple[float, ...] = (0.0, np.pi)
     """rad, of each stop in order; may pass 2π."""
@@ -42,7 +42,7 @@ class TurntableProgramme:
 
 @dataclass(frozen=True, eq=False)
 class Truth:
-    """What is wrong with the block and how it stands; SI."""
+    """The true errors and attitude of the block; SI."""
 
     gyro_bias: Array = field(default_factory=lambda: np.zeros(3))
     """(3,) rad/s."""
@@ -123,7 +123,7 @@ def turn_rates(angle: Array, row: float) -> Array:
 
 
 def at_a_distance(sensors: tuple[Sensor, ...], positions: Array, rate: Array, row: float) -> Array:
-    """(R, m) what sensors at positions (m, 3), m, feel of the turn, m/s²: means of a·(ω×(ω×r) + α×r) over each row.
+    """(R, m) inputs from the turn to sensors at positions (m, 3), m, in m/s²: means of a·(ω×(ω×r) + α×r) over each row.
 
     rate : (R + 1,) of the table at the ends of rows of ``row`` s, rad/s, evenly changing in between.
     """
@@ -144,7 +144,7 @@ def true_attitude(programme: TurntableProgramme, truth: Truth, leaning: Array) -
 
 
 def true_motion(attitude: Array, row: float, latitude: float, g: float) -> BlockMotion:
-    """What the block goes through in rows of ``row`` s.
+    """The true motion of the block in rows of ``row`` s.
 
     attitude : (R + 1, 3, 3) C at the ends of the rows, dimensionless; latitude in rad, g in m/s².
     """
@@ -201,7 +201,7 @@ def simulate_alignment(
 
 
 def with_errors(motion: BlockMotion, truth: Truth) -> BlockMotion:
-    """What the block's axes read without noise: f + ∇, and ω + ε + (E_xz, E_yz, κ)·ω_z."""
+    """The block's axes without noise: f + ∇, and ω + ε + (E_xz, E_yz, κ)·ω_z."""
     rates = motion.rates + truth.gyro_bias + motion.rates[:, 2:] * np.array([*truth.mounting, truth.kappa])
     return replace(motion, rates=rates, forces=motion.forces + truth.accelerometer_bias)
 
@@ -209,7 +209,7 @@ def with_errors(motion: BlockMotion, truth: Truth) -> BlockMotion:
 def _readings(
     sensors: tuple[Sensor, ...], motion: BlockMotion, noise: Imperfections, rng: np.random.Generator
 ) -> Array:
-    """(R, m) what the sensors read along their axes, reading units."""
+    """(R, m) readings of the sensors along their axes, reading units."""
     columns = []
     for sensor in sensors:
         accelerometer = sensor.kind == ACCELEROMETER

@@ -38,9 +38,9 @@ STATES = (
     "E_xz", "E_yz", "kappa_z", "tau_E", "tau_N", "tau_U", "stop_E", "stop_N", "stop_U",
     "along_x", "along_y", "across_x", "across_y",
 )  # fmt: skip
-"""Of every model the first ones."""
+"""Names of the states; every model has the first so many."""
 UNITS = ("m/s",) * 2 + ("rad",) * 3 + ("rad/s",) * 3 + ("m/s²",) * 2 + ("rad", "rad", "1") + ("rad",) * 6 + ("m",) * 4
-"""Of `STATES`."""
+"""Units of `STATES`."""
 V, PHI, EPS, NABLA, MOUNTING = slice(0, 2), slice(2, 5), slice(5, 8), slice(8, 10), slice(10, 13)
 TAU, STOP, LEVER = slice(13, 16), slice(16, 19), slice(19, 23)
 ALL = len(STATES)
@@ -48,14 +48,14 @@ ALL = len(STATES)
 
 
 class InertialModel(StrEnum):
-    """Which states are estimated."""
+    """The set of states that is estimated."""
 
     TEN = "ten-state"
-    """As published: the mounting errors are taken to be zero."""
+    """The ten states as published: the mounting errors are taken to be zero."""
     MOUNTING = "mounting"
-    """With E_xz, E_yz, κ, measured by velocity alone."""
+    """The ten states and E_xz, E_yz, κ, measured by velocity alone."""
     TURNTABLE = "turntable"
-    """With E_xz, E_yz, κ, the lever arms, and the direction of the turntable measured at every stop."""
+    """All of `STATES`: also the lever arms and the direction of the turntable, measured at every stop."""
 
     @property
     def size(self) -> int:

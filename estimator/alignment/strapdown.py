@@ -16,7 +16,7 @@ from estimator.session import Array
 
 @dataclass(frozen=True, eq=False)
 class BlockMotion:
-    """What a block goes through, or what its sensors say of it: means over rows of one length. R rows, block axes."""
+    """Motion of a block, true or as measured: means over rows of one length. R rows, block axes."""
 
     rates: Array
     """(R, 3) rad/s."""
@@ -28,7 +28,7 @@ class BlockMotion:
 
 @dataclass(frozen=True, eq=False)
 class Strapdown:
-    """What a strapdown system computes. K steps."""
+    """Attitude and velocity computed by a strapdown system. K steps."""
 
     path: Path
     attitude: Array

@@ -1,4 +1,4 @@
-"""What single accelerometers do while the table turns: lever arms, what else would look like them, how sure that is.
+"""Response of single accelerometers to the turns of the table: lever arms, rival explanations, and their certainty.
 
 Of every accelerometer the pieces of stops and turns are regressed on k + p·cos θ + q·sin θ − c·⟨ω²⟩ + d·⟨α⟩ by
 generalised least squares. Noise: white, of the density found at the stops; the axis' lean, drawn anew at every stop and
@@ -29,7 +29,7 @@ from estimator.session import Array
 from estimator.significance import p_value
 
 RIVALS = ("vibration", "wobble", "delay or rate")
-"""In the order of `rival_columns`."""
+"""Names of the rivals, in the order of `rival_columns`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +48,7 @@ class Whitened:
 
 @dataclass(frozen=True, eq=False)
 class LeverResponse:
-    """What the turns do to one accelerometer."""
+    """Response of one accelerometer to the turns."""
 
     sensor: int
     """Place among the accelerometers."""
@@ -63,8 +63,9 @@ class LeverResponse:
     excess: float
     """χ² of a degree of freedom that the lever arm leaves, 1 at least."""
     drop: dict[str, tuple[float, int]]
-    """By how much χ² drops with the lever arm, with each rival instead, and with all rivals beside it (``beyond``), and
-    for how many columns."""
+    """Drop of χ² with the lever arm, with each rival in its place, and with all rivals beside it (``beyond``), and the
+    number of columns of each.
+    """
 
     def p_value(self, model: str, excess: float = 1.0) -> float:
         """Probability of such a drop where there is none; ``excess``: by which the noise is larger than assumed."""
@@ -80,7 +81,7 @@ class LeverResponse:
 
 
 def rival_columns(pieces: Pieces) -> dict[str, Array]:
-    """(N, q) of every rival, each in units of its own."""
+    """(N, q) columns of every rival, each in units of its own."""
     turns = pieces.turns
     return {
         "vibration": np.column_stack([turns, pieces.levers[:, 0]]),
@@ -110,7 +111,7 @@ def whitened(pieces: Pieces, i: int, lean: float, ratio: float = 1.0) -> Whitene
 
 
 def lever_response(pieces: Pieces, i: int, axis: Array, lean: float) -> LeverResponse | None:
-    """What the turns do to accelerometer i with input axis (3,); None where the axis is upright.
+    """Fits the response of accelerometer i, with input axis (3,), to the turns; None where the axis is upright.
 
     lean : one sigma of gravity's part across the axis from stop to stop, m/s²: g · wobble.
     """
@@ -135,7 +136,7 @@ def lever_response(pieces: Pieces, i: int, axis: Array, lean: float) -> LeverRes
 
 
 def drop_of(less: LeastSquaresFit, more: LeastSquaresFit) -> tuple[float, int]:
-    """By how much χ² drops with further columns, and how many of them count."""
+    """Drop of χ² with further columns, and the number of them that count."""
     return float(less.chi2 - more.chi2), more.rank - less.rank
 
 

@@ -1,4 +1,4 @@
-"""Rests → what every sensor's noise is, term by term, with the curve that it was read from."""
+"""Estimates the noise terms of every sensor from rests, with the Allan curve that they were read from."""
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from estimator.session import Array, Sensor
 
 
 def allan_terms(rests: Rests) -> BlockNoise | None:
-    """Of every sensor, in order; None where no rest is long enough for a single τ, eight samples.
+    """The noise of every sensor, in order; None where no rest is long enough for a single τ, eight samples.
 
     Nothing is decided of a sensor whose readings never change: its converter is coarser than its noise.
     """

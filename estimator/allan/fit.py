@@ -24,7 +24,7 @@ from estimator.session import Array
 DECIDED = 3.0
 """Sigmas of θ: white noise alone is then called something else as well in fewer than one record of a hundred."""
 ROUNDS = 12
-"""Of weights at the fit; the sizes settle to a thousandth in four or five."""
+"""Rounds of weights at the fit; the sizes settle to a thousandth in four or five."""
 FEWEST = 5
 """Octaves of a run: one more than there are terms."""
 MISFIT = 1e-3
@@ -35,12 +35,12 @@ LIMIT = 1.96
 
 @dataclass(frozen=True, eq=False)
 class AllanFit:
-    """Of one sensor."""
+    """The fitted sizes of one sensor."""
 
     square: Array
     """(4,) θ, squared sizes."""
     sigma: Array
-    """(4,) of θ."""
+    """(4,) one sigma of θ."""
     first: int
     """Octave of the run's shortest τ."""
     end: int
@@ -59,7 +59,7 @@ class AllanFit:
 
 
 def fit(model: AllanModel, value: Array) -> AllanFit | None:
-    """Of variances (J,), units squared, each above 0; None where the terms describe no run of octaves."""
+    """Fits variances (J,), units squared, each above 0; None where the terms describe no run of octaves."""
     for first, end in _runs(len(value)):
         candidate = _fitted(model, value, first, end)
         if candidate is not None:
@@ -74,7 +74,7 @@ def _runs(count: int) -> Iterator[tuple[int, int]]:
 
 
 def _fitted(model: AllanModel, value: Array, first: int, end: int) -> AllanFit | None:
-    """Of one run; None where it is not described."""
+    """Fits one run of octaves; None where the terms do not describe it."""
     octaves = slice(first, end)
     A, seen = model.shapes[octaves], value[octaves]
     products = model.products[:, :, octaves, octaves]
@@ -107,13 +107,13 @@ def _weighted(A: Array, seen: Array, C: Array) -> Array:
 
 
 def _sigmas(A: Array, C: Array) -> Array:
-    """(4,) of θ, each beside all others: a term that came out as none may be there all the same."""
+    """(4,) one sigma of θ, all terms estimated together: a term estimated as zero may be there all the same."""
     information = A.T @ np.linalg.solve(C, A)
     return np.asarray(np.sqrt(np.diag(inverse(information, 1e-15))))
 
 
 def _describes(expected: Array, C: Array, seen: Array, terms: int) -> bool:
-    """Whether what was seen (J,) scatters about what is expected (J,) as C (J, J) says."""
+    """Whether the observed variances (J,) scatter about the expected ones (J,) as the covariance C (J, J) allows."""
     variance = np.diag(C) / expected**2
     third = variance / 9
     normal = (np.cbrt(seen / expected) - (1 - third)) / np.sqrt(third)

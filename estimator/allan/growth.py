@@ -1,4 +1,4 @@
-"""Whether a noise became larger from one record to the next: one term of all sensors of a kind.
+"""Detects growth of a noise term from one record to the next, over all sensors of a kind.
 
 Sizes are compared as logarithms. Each scatters by its own variance, (σ/value)², and from record to record by what all
 sensors scatter by beyond that; with the degrees of freedom of the latter a change over its sigma is Student's t. Where
@@ -36,11 +36,11 @@ class Growth:
     times: float
     """The newest over it."""
     is_larger: bool
-    """By more than chance, and by more than `WORTH`."""
+    """Whether it is larger by more than chance, and by more than `WORTH`."""
 
 
 def growth(courses: Sequence[GrowthCourse], level: float) -> tuple[Growth, ...]:
-    """Of each course of a term and a kind of sensor; ``level``: the chance of a false ``is_larger``, of each."""
+    """Growth of each course of a term and a kind of sensor; ``level``: chance of a false ``is_larger``, for each."""
     logs = [np.log(course.value) for course in courses]
     variances = [(course.sigma / course.value) ** 2 for course in courses]
     freedom, beyond = _excess_spread(logs, variances)
@@ -55,7 +55,7 @@ def growth(courses: Sequence[GrowthCourse], level: float) -> tuple[Growth, ...]:
 
 
 def _excess_spread(logs: Sequence[Array], variances: Sequence[Array]) -> tuple[int, float]:
-    """Degrees of freedom and variance of what sizes before the newest scatter by beyond their own variances."""
+    """Degrees of freedom, and the variance of earlier sizes beyond what their own variances explain."""
     freedom = sum(len(log) - 2 for log in logs)
     if freedom == 0:
         return 0, 0.0

@@ -30,7 +30,7 @@ BELOW = 30
 
 @dataclass(frozen=True, eq=False)
 class AllanModel:
-    """Of Allan variances at J times."""
+    """Model of Allan variances at J times."""
 
     shapes: Array
     """(J, 4) σ² of every term of size one."""
@@ -38,13 +38,13 @@ class AllanModel:
     """(4, 4, J, J) covariances of the estimates, of two terms of size one."""
 
     def covariance(self, squares: Array) -> Array:
-        """(J, J) of the estimates under squared sizes (4,), units squared."""
+        """(J, J) covariance of the estimates for squared sizes (4,), units squared."""
         total = np.einsum("k,l,klij->ij", squares, squares, self.products)
         return np.asarray(total)
 
 
 def model_of(seen: Variances) -> AllanModel:
-    """Of the times and lengths of a record."""
+    """The model for the times and lengths of a record."""
     tau = seen.tau
     shapes = np.column_stack([3 / tau**2, 1 / tau, np.full(len(tau), FLICKER), tau / 3])
     return AllanModel(shapes, _integrals(seen.interval, len(tau)) / seen.shared)

@@ -31,11 +31,11 @@ GAP = 1.5
 
 @dataclass(frozen=True, eq=False)
 class Rests:
-    """What the sensors of a block read at rest."""
+    """The readings of a block at rest."""
 
     sensors: tuple[Sensor, ...]
     readings: tuple[Array, ...]
-    """Of every rest, (n, m) m/s² or rad/s."""
+    """Readings of every rest, (n, m) m/s² or rad/s."""
     interval: float
     """s from sample to sample."""
 

@@ -1,4 +1,4 @@
-"""What a record at rest says of its sensors' noise."""
+"""Noise of the sensors in a record at rest."""
 
 from dataclasses import dataclass
 
@@ -14,7 +14,7 @@ TERMS = ("quantisation", "white-noise", "bias-instability", "random-walk")
 
 @dataclass(frozen=True)
 class AllanTerm:
-    """One of the four."""
+    """One of the four noise terms."""
 
     name: str
     value: float | None
@@ -22,10 +22,10 @@ class AllanTerm:
     sigma: float | None
     """One sigma of the value."""
     most: float | None
-    """Of a term that is not decided: what it hardly exceeds, with a chance of 2.5 %; None where nothing is known."""
+    """Bound on a term that is not decided, exceeded with a chance of 2.5 %; None where nothing is known."""
 
     def interval(self, share: float = 0.95) -> tuple[float, float] | None:
-        """Where the true size lies with that probability; None where the record does not decide it."""
+        """The interval that holds the true size with that probability; None where the record does not decide it."""
         if self.value is None or self.sigma is None:
             return None
         return interval_of(self.value, self.sigma, share)
@@ -38,13 +38,13 @@ class SensorNoise(Document, keys={"tau": "tau_s", "holds": "holds_s"}):
     name: str
     kind: str
     terms: tuple[AllanTerm, ...]
-    """In the order of `TERMS`."""
+    """The noise terms, in the order of `TERMS`."""
     tau: Array
     """(J,) s."""
     deviation: Array
     """(J,) overlapping Allan deviation, m/s² or rad/s."""
     freedom: Array
-    """(J,) its effective degrees of freedom, under the fitted terms."""
+    """(J,) effective degrees of freedom of the deviation, under the fitted terms."""
     holds: tuple[float, float] | None
     """s, from the shortest to the longest τ at which the terms describe it; None where they do nowhere."""
 
@@ -71,7 +71,7 @@ def freedom_of(value: float, sigma: float) -> float:
 
 
 def interval_of(value: float, sigma: float, share: float = 0.95) -> tuple[float, float]:
-    """Of a size whose square is distributed as χ²_ν/ν times the true one; unit of the value."""
+    """Confidence interval of a size whose square is distributed as χ²_ν/ν times the true one; unit of the value."""
     freedom = freedom_of(value, sigma)
     low, high = 2 * gammaincinv(freedom / 2, [0.5 - share / 2, 0.5 + share / 2])
     return value * float(np.sqrt(freedom / high)), value * float(np.sqrt(freedom / low))

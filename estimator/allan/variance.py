@@ -13,7 +13,7 @@ import numpy as np
 from estimator.session import Array
 
 SHARE = 8
-"""Of a rest: the longest τ is that part of it, with some ten degrees of freedom."""
+"""The longest τ is this fraction of a rest, one over `SHARE`, with some ten degrees of freedom."""
 PHASES = 16
 """Overlapping differences a τ: more repeat one another, and sixteen lose nothing that counts."""
 ENDS = 4 / 3
@@ -43,7 +43,8 @@ class Variances:
 
 
 def variances(rests: Sequence[Array], interval: float) -> Variances | None:
-    """Of readings (n, m), any unit, of every rest, one sample each ``interval`` s; None where no rest is long enough.
+    """Allan variances of readings (n, m), any unit, of every rest, one sample each ``interval`` s; None where no rest
+    is long enough.
 
     A rest that gives no τ at all is left out.
     """

@@ -74,7 +74,7 @@ def coefficients(y: Array, beta: Array, flipped: Array) -> Coefficients | None:
 
 @lru_cache(maxsize=SCHEDULES)
 def pseudo_inverse(beta: bytes, flipped: bytes) -> tuple[Array, Array] | None:
-    """(8, R) of the `design` and (8,) the variance of each coefficient per unit variance of a reading, both
+    """(8, R) pseudo-inverse of the `design` and (8,) variance of each coefficient per unit variance of a reading, both
     dimensionless and read only; None where the rows do not determine the coefficients.
 
     ``beta``, ``flipped``: the content of `design`'s arrays.

@@ -50,7 +50,7 @@ def together(session: CalibrationSession) -> bool:
 
 
 def schedule(session: CalibrationSession) -> Hashable:
-    """What two sessions must share to be solved together: everything but the readings, their errors and names."""
+    """Key of the sessions that can be solved together: everything but the readings, their errors and names."""
     assert session.beta is not None
     assert session.flipped is not None
     sensors = tuple((s.kind, s.nominal_axis.tobytes(), s.nominal_scale, s.bias_repeatability) for s in session.sensors)

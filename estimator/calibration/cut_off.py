@@ -15,7 +15,7 @@ SHARE = 0.2
 name (it leaves them out), and do not spoil the applied vectors of the others …"""
 
 FEWEST = 4
-"""… and their least number: two or three equal readings happen by quantisation."""
+"""Fewest readings at one extreme: two or three equal readings happen by quantisation."""
 
 CHANGED = 1.0
 """m/s²; range of what the other sensors say of its input in those rows, from which it was cut off: a tenth of g, far
@@ -57,7 +57,9 @@ def expected(session: CalibrationSession, i: int) -> Array | None:
 
 
 def cut_off(end: float, rows: Array, change: float) -> str:
-    """What happened in ``rows`` (k,), numbers from 0, and what to do; ``end`` in reading units, ``change`` in m/s²."""
+    """Message: the clipped ``rows`` (k,), numbers from 0, with a remedy; ``end`` in reading units, ``change`` in
+    m/s².
+    """
     named = joined(", ", (str(row + 1) for row in rows[:SHOWN])) + (", …" if len(rows) > SHOWN else "")
     parts = {"end": f"{end:g}", "rows": len(rows), "row_names": named, "change": f"{change:.2g}"}
     return say(

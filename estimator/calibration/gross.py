@@ -66,7 +66,9 @@ def on_table(session: CalibrationSession, azimuth: Array) -> CalibrationSession:
 
 
 def in_orientations(session: CalibrationSession) -> CalibrationSession:
-    """The same in unknown orientations: accelerometers by each other and gravity, gyros by their own rest."""
+    """The session in unknown orientations, without its gross readings: accelerometers are judged by each other and
+    gravity, gyros by their own rest.
+    """
     u, gyro = session.readings, np.array([s.kind != ACCELEROMETER for s in session.sensors])
     predicted = nothing_predicted(u)
     row_suspects: dict[int, tuple[int, ...]] = {}

@@ -49,12 +49,14 @@ class GrossChoice:
     """The readings of a session to set aside. R rows, m sensors."""
 
     at: Array
-    """(R, m) bool: what takes no part; all of a channel that is dead."""
+    """(R, m) bool: readings set aside; all readings of a channel that is dead."""
     predicted: Predicted
     slips: Mapping[tuple[int, int], str]
-    """By row and sensor, of what is wrong."""
+    """The kind of slip, by row and sensor."""
     suspects: Mapping[int, tuple[int, ...]] = field(default_factory=dict)
-    """By row that cannot tell which of its readings is wrong: sensors, the likeliest first; all the row is out."""
+    """The suspects of each row that cannot tell which of its readings is wrong: sensors, the likeliest first. All of
+    such a row is set aside.
+    """
 
     def slip(self, row: int, sensor: int) -> str:
         """The likely one of a reading."""

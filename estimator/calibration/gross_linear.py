@@ -57,14 +57,14 @@ class Predicted:
     """(R, m) reading less value in sigmas; NaN likewise."""
 
     def with_sensors(self, which: Array, part: "Predicted") -> "Predicted":
-        """The same with other predictions, of shape (R, k), for the k sensors ``which`` (m,) bool."""
+        """The prediction with that of k sensors, ``which`` (m,) bool, replaced by ``part``, of shape (R, k)."""
         merged = [a.copy() for a in (self.value, self.sigma, self.t)]
         for whole, own in zip(merged, (part.value, part.sigma, part.t), strict=True):
             whole[:, which] = own
         return Predicted(*merged)
 
     def shifted(self, offset: Array) -> "Predicted":
-        """The same of readings with an ``offset`` (m,), reading units, on top."""
+        """The prediction of readings with an ``offset`` (m,), reading units, on top."""
         return Predicted(self.value + offset, self.sigma, self.t)
 
 
@@ -113,8 +113,9 @@ def sticks_out(basis: Array, y: Array, stated: Array) -> Array:
 
 
 def regression(basis: Array, y: Array, stated: Array, left_out: Array) -> Predicted:
-    """Of readings y (R, m) in a basis (R, p), with ``stated`` (R, m) standard errors, NaN where there are none;
-    readings ``left_out`` (R, m) bool take no part to begin with."""
+    """Predicts readings y (R, m) in a basis (R, p), with ``stated`` (R, m) standard errors, NaN where there are none;
+    readings ``left_out`` (R, m) bool take no part to begin with.
+    """
     parts = [of_one(basis, y[:, i], stated[:, i], ~left_out[:, i]) for i in range(y.shape[1])]
     value, sigma = (np.stack(columns, axis=1) for columns in zip(*parts, strict=True))
     with np.errstate(invalid="ignore"):
@@ -122,7 +123,7 @@ def regression(basis: Array, y: Array, stated: Array, left_out: Array) -> Predic
 
 
 def of_one(basis: Array, y: Array, stated: Array, free: Array) -> tuple[Array, Array]:
-    """(R,) what a sensor's readings y (R,) should be, and one sigma of the difference."""
+    """(R,) predictions of a sensor's readings y (R,), and one sigma of the difference."""
     nothing = np.full(len(y), np.nan), np.full(len(y), np.nan)
     known = bool(np.isfinite(stated).all() and (stated > 0).all())
     weight = 1.0 / stated if known else np.ones(len(y))

@@ -60,7 +60,7 @@ TURNED = 12
 """Steps of that look; Gauss–Newton takes five …"""
 
 STEP = 0.5
-"""… none longer than this, rad."""
+"""Longest of those steps, rad."""
 
 SEEN = 0.01
 """Share of a reading that parity must show to be judged by it: a tenth of its size."""
@@ -86,7 +86,7 @@ class RobustBlock:
 
     @classmethod
     def of(cls, session: CalibrationSession, felt: Array) -> "RobustBlock":
-        """Of the sensors ``felt`` (m,) bool."""
+        """Prepares the sensors ``felt`` (m,) bool."""
         g = gravity(session.site)
         rows, stated = accelerometer_rows(session, felt, g)
         scale = np.array([s.nominal_scale for s, is_felt in zip(session.sensors, felt, strict=True) if is_felt])
@@ -95,7 +95,7 @@ class RobustBlock:
 
 @dataclass(frozen=True, eq=False)
 class BlockFit:
-    """Where the robust fit ended."""
+    """The end of the robust fit."""
 
     predicted: Predicted
     unknowns: Unknowns
@@ -252,8 +252,10 @@ class WithoutEach:
 
 
 def without_each(block: RobustBlock, fit: BlockFit, row: int, off: Array, spread: float = 1.0) -> WithoutEach:
-    """Of a row, its orientation looked for from everywhere, and of two as good (of three readings, mirrored ones) the
-    one nearer what was read; ``off`` (k,) bool: readings that take no part anyway; ``spread``: times its sigma."""
+    """The row without each of its readings. Its orientation is searched from many starts; of two fits as good (of three
+    readings, mirrored ones), the one nearer the readings is taken. ``off`` (k,) bool: readings that take no part
+    anyway; ``spread``: factor on their sigma.
+    """
     k, tried = block.rows.y.shape[1], len(TRIED) + 1
     out = np.repeat(np.vstack([np.eye(k, dtype=bool), np.zeros(k, dtype=bool)]) | off, tried, axis=0)
     n = len(out)
@@ -277,15 +279,15 @@ def without_each(block: RobustBlock, fit: BlockFit, row: int, off: Array, spread
 
 @dataclass(frozen=True, eq=False)
 class GrossFound:
-    """Of the accelerometers ``felt`` (m,) bool."""
+    """The predictions and suspects of the accelerometers ``felt`` (m,) bool."""
 
     felt: Array
     predicted: Predicted
     suspects: dict[int, tuple[int, ...]]
-    """By row that cannot tell which reading is wrong: sensors, the likeliest first."""
+    """The suspects of each row that cannot tell which reading is wrong: sensors, the likeliest first."""
 
     def merged_into(self, whole: Predicted) -> tuple[Predicted, dict[int, tuple[int, ...]]]:
-        """Beside what was predicted of other sensors."""
+        """The predictions and suspects put into ``whole``, the prediction of all sensors."""
         return whole.with_sensors(self.felt, self.predicted), self.suspects
 
 
@@ -307,8 +309,9 @@ def accelerometers_predicted(session: CalibrationSession, left_out: Array) -> Gr
 
 
 def stands_out_of(block: RobustBlock) -> bool:
-    """Whether a reading stands out of what the sensors must have in common, by linear fits alone: the readings in the
-    null space of the nominal axes follow the vector that they measure, and that lies on an ellipsoid."""
+    """Whether a reading stands out, by linear fits alone, from what the sensors must have in common: the readings in
+    the null space of the nominal axes follow the vector that they measure, and that lies on an ellipsoid.
+    """
     rows, (R, k) = block.rows, block.rows.y.shape
     inward = np.linalg.pinv(rows.nominal_axes)
     points = (rows.y - np.median(rows.y, axis=0)) @ inward.T
@@ -355,8 +358,9 @@ def identified(session: CalibrationSession, block: RobustBlock, fit: BlockFit, f
 
 
 def self_evident(session: CalibrationSession, place: Array, j: int, likely: Array, value: Array) -> Array:
-    """Of suspects ``likely`` (n,) in row j, the one whose reading is a plain slip of what it should be, ``value`` (k,)
-    in reading units; all where none or several are."""
+    """The suspect, out of ``likely`` (n,) in row j, whose reading is a plain slip of its prediction ``value`` (k,),
+    reading units; all of them where none or several are.
+    """
     u = session.readings
     predicted = Predicted(*(np.full(u.shape, np.nan) for _ in range(3)))
     predicted.value[j, place] = value

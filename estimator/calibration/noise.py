@@ -90,7 +90,7 @@ def _estimated(variance: Array, y: Array, p: SensorParameters, geometry: Geometr
 
 @dataclass(frozen=True, eq=False)
 class Projection:
-    """What the fit leaves of the readings, and how the parameters lean on them. P parameters, k constant errors."""
+    """Residuals of the readings, and the dependence of the parameters on them. P parameters, k constant errors."""
 
     pulled: Array
     """(S, R, m) residuals weighted by P, 1/(m/s²) or 1/(rad/s)."""
@@ -104,7 +104,9 @@ class Projection:
 
 
 def projection_of(variance: Array, y: Array, p: SensorParameters, geometry: Geometry) -> Projection:
-    """Of readings y (S, R, m), reading units, of ``variance`` (S, R, m) at the input, (m/s²)² or (rad/s)²."""
+    """The projection of readings y (S, R, m), reading units, of ``variance`` (S, R, m) at the input, (m/s²)² or
+    (rad/s)².
+    """
     S, R, m = y.shape
     weight = 1.0 / variance
     normal, residual = linearise(y, p, geometry, weight)
@@ -192,8 +194,9 @@ def typical(value: Array, sensors: Array, norm: Array) -> Array:
 
 
 def median(values: Array) -> Array:
-    """(S,) of the values (S, k), in their unit, that are not NaN, one of each row at least; `numpy.nanmedian` takes a
-    millisecond for it."""
+    """(S,) medians of the rows of values (S, k), in their unit, without NaN; every row holds a number.
+    `numpy.nanmedian` takes a millisecond for it.
+    """
     rising, known = np.sort(values, axis=1), (~np.isnan(values)).sum(axis=1, keepdims=True)
     lower, upper = (np.take_along_axis(rising, place, axis=1)[:, 0] for place in ((known - 1) // 2, known // 2))
     return np.asarray((lower + upper) / 2)

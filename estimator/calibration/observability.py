@@ -1,4 +1,4 @@
-"""What a session determines of each sensor, and what it determines only in combination."""
+"""The parameters that a session determines of each sensor, and those that it determines only in combination."""
 
 from dataclasses import dataclass
 from functools import cached_property

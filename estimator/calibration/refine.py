@@ -60,7 +60,9 @@ class RefinedFit:
     residual: Array
     """(S, R, m) at the input, m/s² (rad/s)."""
     variance: Array
-    """(S, R, m) of the independent noise at the input, (m/s²)² or (rad/s)²; infinite for readings that take no part."""
+    """(S, R, m) variance of the independent noise at the input, (m/s²)² or (rad/s)²; infinite for readings that take no
+    part.
+    """
     chi2: Array
     """(S,)"""
     constant: Array
@@ -258,7 +260,9 @@ def fit(y: Array, variance: Array, geometry: Geometry, start: SensorParameters) 
 
 
 def with_sessions_replaced(result: Any, at: Array, again: Any) -> Any:
-    """The same result with the sessions ``at`` (k,) of every array (S, …), SI or dimensionless, from another (k, …)."""
+    """A copy of the result whose sessions ``at`` (k,) are replaced in every array (S, …) by those of ``again`` (k, …),
+    SI or dimensionless.
+    """
     if isinstance(result, np.ndarray):
         result = result.copy()
         result[at] = again

@@ -100,7 +100,7 @@ def noise_variance(
 
 
 def judged(solution: RefinedFit, stated: Array) -> tuple[Spectrum, Array, Array]:
-    """What is observable, the p-value (S,), and the factor (S,) by which stated row noise must grow to be believed.
+    """The observable part, the p-value (S,), and the factor (S,) by which stated row noise must grow to be believed.
 
     stated : (S,) bool, whether all noise is; the others are numbers without unit.
     Where the stated noise cannot explain the residuals, all that is drawn anew at every row is enlarged by χ² per

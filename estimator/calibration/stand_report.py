@@ -1,4 +1,4 @@
-"""From the solution of sessions on a two-axis stand to one `Calibration` a session.
+"""Builds one `Calibration` a session from the solution of sessions on a two-axis stand.
 
 What can be done for all sessions at once is done on arrays; what is left builds the result of one session, when it is
 read.
@@ -21,7 +21,7 @@ from estimator.results import PARAMETERS, Calibration, Estimate, Fit, KnownCombi
 from estimator.session import Array, CalibrationSession
 
 METHOD = "two-axis-stand/maximum-likelihood"
-"""As results name it."""
+"""Name of the method in results."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +38,7 @@ class Solved:
     p_value: Array
     """(S,)"""
     factor: Array
-    """(S,) by which the stated row noise was enlarged."""
+    """(S,) factor by which the stated row noise was enlarged."""
     freedom: Array
     """(S, P) degrees of freedom of the variances: infinite where the noise is known, NaN where not determined."""
 
@@ -92,7 +92,7 @@ def tables(solved: Solved) -> Tables:
 
 @dataclass(frozen=True, eq=False)
 class Reports:
-    """What is reported of sessions of one schedule, worked out when the first of them is read."""
+    """The reports of sessions of one schedule, worked out when the first of them is read."""
 
     sessions: tuple[CalibrationSession, ...]
     solved: Solved
@@ -104,7 +104,7 @@ class Reports:
 
     @cached_property
     def fits(self) -> list[tuple[Any, ...]]:
-        """What `quality` says of every session."""
+        """The line of `qualities` for every session."""
         return qualities(self.solved)
 
     def __getitem__(self, k: int) -> Calibration:
@@ -187,7 +187,7 @@ def known(k: int, i: int, solved: Solved, seen: list[bool]) -> tuple[KnownCombin
 
 
 def combinations(k: int, i: int, solved: Solved, seen: list[bool]) -> tuple[KnownCombination, ...]:
-    """The same with the sigmas under the noise that was used."""
+    """The combinations, with their sigmas under the noise that was used."""
     blind = {element for element, s in zip(PARAMETERS, seen, strict=False) if not s}
     if blind == {"quadratic"}:
         return ()
@@ -201,8 +201,9 @@ def combinations(k: int, i: int, solved: Solved, seen: list[bool]) -> tuple[Know
 
 
 def qualities(solved: Solved) -> list[tuple[Any, ...]]:
-    """For every session χ², rank, degrees of freedom, p-value, residual, whether all noise was stated, the factor, and
-    the weakest direction: its sensor, its element and its sigma."""
+    """χ², rank, degrees of freedom, p-value, residual, whether all noise was stated, the factor, and the weakest
+    direction (its sensor, its element and its sigma) of every session.
+    """
     fitted, seen = solved.fitted, solved.spectrum
     used = fitted.readings
     squares = np.where(np.isfinite(fitted.variance), fitted.residual**2, 0.0).sum(axis=(1, 2))

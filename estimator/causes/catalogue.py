@@ -55,9 +55,9 @@ CATALOGUE: tuple[Cause, ...] = (
 )
 
 ON_TURNTABLE: tuple[Cause, ...] = (turntable.LeverArm(),)
-"""What is looked for in alignments; `CATALOGUE` in calibrations."""
+"""Causes that are looked for in alignments; `CATALOGUE` in calibrations."""
 OF_SEVERAL: tuple[Cause, ...] = (shared.SharedCourse(),)
-"""What only several sensors together show."""
+"""Causes that only several sensors together show."""
 UNEXPLAINED = "unexplained"
 
 

@@ -1,4 +1,4 @@
-"""What every cause is: one physical effect that the baseline simulation lacks, and what it leaves in the readings.
+"""The interface of a cause: one physical effect that the baseline simulation lacks, and its trace in the readings.
 
 A cause names itself, states its equation, what the session must provide, whom it acts on and what to do about it,
 and yields its *shapes*: signature columns at the input, one for every place and nonlinear parameter it could have.
@@ -35,7 +35,7 @@ NEEDS = frozenset(
         "history",
     }
 )
-"""What a cause may need."""
+"""Everything that a cause may need of a session."""
 
 
 LIVELIEST = 2.0
@@ -44,17 +44,17 @@ hundred samples scatters by a seventh."""
 
 
 def varies(variance: Array) -> bool:
-    """Whether variances (R, m), of any unit, of some column are no mere scatter about one value."""
+    """Whether variances (R, m), of any unit, of some column exceed mere scatter about one value."""
     return bool(np.any(variance.max(axis=0) > LIVELIEST * np.median(variance, axis=0)))
 
 
 @dataclass(frozen=True, eq=False)
 class Setting:
-    """What a cause may look at: the applied vectors, the sensors and what was recorded. R rows, m sensors."""
+    """Everything that a cause may look at: applied vectors, sensors and recorded quantities. R rows, m sensors."""
 
     kinds: tuple[str, ...]
     parameters: SensorParameters
-    """(m,) at which the signatures are taken."""
+    """(m,) parameters at which the signatures are taken."""
     n: Array
     """(R, m, 3) applied vectors, block axes, m/s² (rad/s)."""
     norm: Array
@@ -97,7 +97,7 @@ class Setting:
 
     @cached_property
     def input(self) -> Array:
-        """(R, m) what the sensors integrate, a + b + c·a², m/s² (rad/s)."""
+        """(R, m) inputs that the sensors integrate, a + b + c·a², m/s² (rad/s)."""
         return input_of(self.parameters, self.n)
 
     @property
@@ -155,7 +155,7 @@ class Shape:
     """Values of the nonlinear parameters, in the order of `Cause.nonlinear_units`."""
 
     def first(self, q: int) -> "Shape":
-        """The same with its first q columns."""
+        """The shape with its first q columns alone."""
         return replace(self, columns=self.columns[..., :q])
 
 
@@ -169,53 +169,53 @@ class Cause(ABC):
     units: ClassVar[tuple[str, ...]]
     """SI unit of every amplitude, for an accelerometer; with m/s² read as rad/s for a gyro."""
     sentence: ClassVar[str]
-    """What is wrong, for a maintenance engineer; ``{sensors}`` is filled in."""
+    """Description of the fault, for a maintenance engineer; ``{sensors}`` is filled in."""
     advice: ClassVar[str]
     needs: ClassVar[frozenset[str]] = frozenset()
-    """Of `NEEDS`: of time, temperature and vibration it looks at nothing that it does not need."""
+    """The needs, out of `NEEDS`; time, temperature and vibration are looked at only where they are needed."""
     nonlinear_units: ClassVar[tuple[str, ...]] = ()
     kind: ClassVar[str | None] = None
     """Kind of sensor it acts on; None for both."""
     between: ClassVar[bool] = False
     """Whether it shows in what changed since the history (or from nominal), not in the session's residuals."""
     repeats: ClassVar[int] = 1
-    """How often it may happen to one sensor in a session; what needs more of them is no such cause."""
+    """Most times that it may happen to one sensor in a session; what needs more of them is no such cause."""
     passing: ClassVar[bool] = False
     """Whether it belongs to a single session, so that no model can hold it."""
     moves_parameters: ClassVar[bool] = False
-    """Whether the sensor's parameters really are what it makes of them, so that it stays in the calibration."""
+    """Whether it truly changes the sensor's parameters, so that it stays in the calibration."""
     turns_flipped_run: ClassVar[bool] = False
     """Whether its amplitude is the rotation vector of the block in the flipped run, taken out as the rotation it is."""
     turns_block: ClassVar[bool] = False
     """Whether its amplitude is the rotation vector of the whole block, taken out as the rotation that it is."""
     grows_an_angle: ClassVar[bool] = False
-    """Whether its rad/s is an angle that grows with time, not a rate that is measured."""
+    """Whether an amplitude in rad/s is an angle that grows with time, not a rate that is measured."""
     shared_sentence: ClassVar[str] = ""
-    """What it is called where several sensors have it at once, as one event; empty where it is not looked for so."""
+    """The sentence where several sensors have it at once, as one event; empty where such events are not looked for."""
     shared_advice: ClassVar[str] = ""
     clips: ClassVar[bool] = False
     """Whether it cuts readings off at a limit, beyond which they tell nothing."""
     since_power_on: ClassVar[bool] = False
     """Whether its time counts from switching on, where the session says when that was."""
     lacking: ClassVar[str] = "a sensor it acts on"
-    """What a session lacks that has all that the cause needs, and no shape of it."""
+    """The missing thing in a session that has all that the cause needs, and yet no shape of it."""
     always_modelled: ClassVar[bool] = False
-    """Whether the model of its programme holds it in every session, so that nothing is left to accept."""
+    """Whether the model of its programme always includes it, so that nothing is left to accept."""
     shape_words: ClassVar[str] = ""
-    """What its nonlinear parameter is, for people: ``time constant``, ``from`` (a row)."""
+    """Name of its nonlinear parameter, for people: ``time constant``, ``from`` (a row)."""
     contains: ClassVar[frozenset[str]] = frozenset()
     """Causes that it is where some of its amplitudes are zero: beside one that is named it says nothing else."""
     amplitude_words: ClassVar[tuple[str, ...]] = ()
-    """What each of several amplitudes is, for people; empty where they are mere coefficients."""
+    """Name of each of several amplitudes, for people; empty where they are mere coefficients."""
 
     @property
     def name(self) -> str:
-        """For people: ``bias temperature``."""
+        """The identifier in words, for people: ``bias temperature``."""
         return self.identifier.replace("-", " ")
 
     @property
     def is_of_sensor(self) -> bool:
-        """Whether it is a property of one sensor as it is now, and no mere change since earlier sessions."""
+        """Whether it is a present property of one sensor, and not merely a change since earlier sessions."""
         return self.scope in ("sensor", "environment", "gyro") and not self.between
 
     @property
@@ -232,9 +232,9 @@ class Signature(Cause):
     """A cause whose effect is a linear combination of known columns."""
 
     nameless: ClassVar[bool] = False
-    """Whether it is a mere pattern, no cause: what lives within one session and has no history."""
+    """Whether it is a mere pattern that is no cause: it lives within one session and has no history."""
     bounded: ClassVar[bool] = False
-    """Whether `plausible` has something to say of the amplitude."""
+    """Whether `plausible` restricts the amplitude."""
 
     @property
     def can_be_modelled(self) -> bool:
@@ -245,12 +245,12 @@ class Signature(Cause):
         """Every signature the cause could leave in this session."""
 
     def columns(self, setting: Setting, shape: Shape) -> Array:
-        """(R, m, q) what the effect of some shape adds in another session, m/s² (rad/s) per unit amplitude."""
+        """(R, m, q) effect of a shape in another session, m/s² (rad/s) per unit amplitude."""
         known = (s for s in self.shapes(setting) if (s.sensors, s.nonlinear) == (shape.sensors, shape.nonlinear))
         return next(known).columns
 
     def all_columns(self, setting: Setting, shapes: Sequence[Shape]) -> Array:
-        """(R, m, S·q) what the effects of S shapes add in another session, m/s² (rad/s) per unit amplitude."""
+        """(R, m, S·q) effects of S shapes in another session, m/s² (rad/s) per unit amplitude."""
         return np.concatenate([self.columns(setting, shape) for shape in shapes], axis=-1)
 
     def plausible(self, shape: Shape, amplitude: float) -> bool:
@@ -284,7 +284,7 @@ class RecordCorrection(Cause):
     units = ()
     between = True
     of_rows: ClassVar[bool] = False
-    """Whether rows are concerned, not sensors."""
+    """Whether it concerns rows, not sensors."""
 
     @abstractmethod
     def corrected(self, session: CalibrationSession) -> Iterator[tuple[tuple[int, ...], CalibrationSession]]:
@@ -308,10 +308,10 @@ class SensorCause(Signature):
 
     @abstractmethod
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
-        """(R, q) what a unit amplitude adds inside the bracket of sensor i, m/s² (rad/s)."""
+        """(R, q) effect of a unit amplitude inside the bracket of sensor i, m/s² (rad/s)."""
 
     def terms(self, setting: Setting, i: int, grid: Sequence[tuple[float, ...]]) -> Array:
-        """(S, R, q) the same at every one of S points of the grid, m/s² (rad/s)."""
+        """(S, R, q) terms of sensor i at S points of the grid, m/s² (rad/s)."""
         terms = [self.term(setting, i, nonlinear) for nonlinear in grid]
         return terms[0][None] if len(terms) == 1 else np.stack(terms)
 
@@ -344,7 +344,7 @@ class SensorCause(Signature):
         return self.placed(setting, shape.sensors[0], shape.nonlinear)
 
     def all_columns(self, setting: Setting, shapes: Sequence[Shape]) -> Array:
-        """(R, m, S·q) of S shapes, sensor by sensor, m/s² (rad/s) per unit amplitude."""
+        """(R, m, S·q) columns of S shapes, sensor by sensor, m/s² (rad/s) per unit amplitude."""
         columns = [on_sensor(setting, i, terms) for i, terms in self.terms_of(setting, shapes)]
         return np.moveaxis(np.concatenate(columns), 0, 2).reshape(setting.rows, len(setting.kinds), -1)
 
@@ -354,10 +354,10 @@ class GridCause(SensorCause):
 
     @abstractmethod
     def terms(self, setting: Setting, i: int, grid: Sequence[tuple[float, ...]]) -> Array:
-        """(S, R, q) what a unit amplitude adds at S points of the grid inside the bracket of sensor i, m/s² (rad/s)."""
+        """(S, R, q) effects of a unit amplitude at S points of the grid inside sensor i's bracket, m/s² (rad/s)."""
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
-        """(R, q) the same at one point, m/s² (rad/s)."""
+        """(R, q) term of sensor i at one point of the grid, m/s² (rad/s)."""
         return np.asarray(self.terms(setting, i, [nonlinear])[0])
 
 

@@ -202,7 +202,7 @@ class WarmUp(GridCause):
     steps = 10
 
     def grid(self, setting: Setting) -> Iterator[tuple[float, ...]]:
-        """From the rows' spacing to the span; no τ that is over before the first row."""
+        """Time constants from the rows' spacing to the span; no τ that is over before the first row."""
         assert setting.time is not None
         span = float(np.ptp(setting.time))
         shortest = max(span / max(setting.rows, 2), settled(setting))
@@ -228,7 +228,7 @@ class WarmUp(GridCause):
             yield Shape(shape.sensors, columns, (float(tau * factor),))
 
     def derivative(self, setting: Setting, shape: Shape) -> Array:
-        """(R, m, 1) by ln τ, dimensionless."""
+        """(R, m, 1) derivative of the columns by ln τ, dimensionless."""
         (tau,), time = shape.nonlinear, since_on(setting)
         bent = np.zeros((*shape.columns.shape[:2], 1))
         bent[:, shape.sensors[0], 0] = np.exp(-time / tau) * time / tau

@@ -20,7 +20,7 @@ from estimator.causes.contract import SensorCause, Setting, Shape, column
 from estimator.session import Array
 
 STEP = 1e-3
-"""Of ln τ for the derivative: its square is far below what any reading resolves, rounding far below that."""
+"""Step of ln τ for the derivative: its square is far below what any reading resolves, rounding far below that."""
 
 
 def lagging(temperature: Array, time: Array, tau: float) -> Array:
@@ -60,7 +60,9 @@ class ThermalLag(SensorCause):
         return super().available(setting) and setting.time is not None and bool(np.all(np.diff(setting.time) > 0))
 
     def grid(self, setting: Setting) -> Iterator[tuple[float, ...]]:
-        """From the rows' spacing, below which it is the temperature itself, to the span, beyond which it is its sum."""
+        """Time constants from the spacing of the rows, below which L is the temperature itself, to their whole span,
+        beyond which L is its sum.
+        """
         assert setting.time is not None
         span = float(np.ptp(setting.time))
         yield from ((float(tau),) for tau in np.geomspace(span / max(setting.rows, 2), span, self.steps))
@@ -79,7 +81,7 @@ class ThermalLag(SensorCause):
             yield Shape(shape.sensors, self.placed(setting, i, near), near)
 
     def derivative(self, setting: Setting, shape: Shape) -> Array:
-        """(R, m, 1) by ln τ, °C."""
+        """(R, m, 1) derivative of the columns by ln τ, °C."""
         (i,), (tau,) = shape.sensors, shape.nonlinear
         above, below = (self.placed(setting, i, (tau * exp(step),)) for step in (STEP, -STEP))
         return (above - below) / (2 * STEP)

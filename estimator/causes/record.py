@@ -68,7 +68,7 @@ class SensorDrift(SensorCause):
     advice = "Watch this sensor: repeat the session to confirm, and plan its adjustment or replacement."
 
     moves = ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 1), (1, 1, 1, 1))
-    """What may have moved: the scale, the bias or the axis alone, or everything."""
+    """The parameters that may have moved: the scale, the bias or the axis alone, or everything."""
 
     def grid(self, setting: Setting) -> Iterator[tuple[float, ...]]:
         yield from self.moves

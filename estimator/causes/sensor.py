@@ -161,7 +161,7 @@ class Saturation(GridCause):
                     yield (float(limit * setting.norm[i]), side)
 
     def terms(self, setting: Setting, i: int, grid: Sequence[tuple[float, ...]]) -> Array:
-        """(S, R, 1) what the limit cuts off, m/s²."""
+        """(S, R, 1) part of the input that the limit cuts off, m/s²."""
         limit, side = np.split(np.array(grid), 2, axis=1)
         size, sign = self.beyond(setting, i, side)
         return column(-sign * np.maximum(size - limit, 0.0))

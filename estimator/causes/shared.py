@@ -20,8 +20,9 @@ WAVES = 12
 
 
 class SharedCourse(SensorCause):
-    """Its shape is the sizes of the waves of `KINDS` in turn, zero but for one of them; they are found where sensors
-    share them, and tried on no single one."""
+    """A course of several sensors. Its shape is the sizes of the waves of `KINDS` in turn, zero but for one kind; they
+    are found where sensors share them, and tried on no single one.
+    """
 
     identifier = "shared-course"
     scope = "environment"
@@ -67,7 +68,7 @@ def of_kind(kind: int, sizes: Array) -> tuple[float, ...]:
 
 
 def kind_of(shape: tuple[float, ...]) -> int:
-    """Of which of `KINDS` the waves of a course are."""
+    """Index in `KINDS` of the waves of a course."""
     return int(np.argmax([np.any(sizes) for sizes in np.split(np.array(shape), len(KINDS))]))
 
 

@@ -20,7 +20,7 @@ class BetaPattern(CommonCause):
     scope = "stand"
     needs = frozenset({"stand"})
     periods: ClassVar[int] = 1
-    """Per turn, of one that is periodic."""
+    """Periods per turn, of a periodic error."""
 
     def pattern(self, setting: Setting) -> Array:
         """(R, q) β error, rad per unit amplitude; unless told otherwise sin and cos of a multiple of β."""

@@ -24,7 +24,7 @@ class LeverArm(Cause):
         "(position_m); they are then checked."
     )
     correct = "Measure the positions of the sensors and correct position_m; check that no two sensors are exchanged."
-    """What to do where the turns contradict a stated position."""
+    """Advice where the turns contradict a stated position."""
 
     def lever_sentence(self, sensor: str, distance: str) -> str:
         """The sentence with the size: ``A2 is 4.1 ± 0.4 cm from the turn axis and measures the rotation.``"""
@@ -33,11 +33,11 @@ class LeverArm(Cause):
         )
 
     def contradiction_sentence(self, sensor: str, distance: str) -> str:
-        """The same where the file states positions, and the turns contradict that of this sensor."""
+        """The sentence where the file states positions, and the turns contradict that of this sensor."""
         return say("{sensor} is {distance} from its stated position.", sensor=sensor, distance=distance)
 
     def separation_sentence(self, sensors: Sequence[str], distance: str) -> str:
-        """The same where the turns cannot tell which of two sensors sits elsewhere."""
+        """The sentence where the turns cannot tell which of two sensors sits elsewhere."""
         return say(
             "{sensors} are not at their stated positions relative to one another: one of them is {distance} away.",
             sensors=joined(" and ", sensors),

@@ -51,7 +51,7 @@ def diagnose(
     *,
     catalogue: Sequence[Cause] = CATALOGUE,
 ) -> Diagnosis:
-    """What the simulation gets wrong about a session, as its own readings show it.
+    """Diagnoses a session from its own readings: the effects that the simulation lacks.
 
     `estimator.diagnose` adds what only all sessions of the unit together show.
 
@@ -75,17 +75,17 @@ class PutRight:
     """A session whose record is corrected, and its history, both fitted."""
 
     rows: CalibrationSession
-    """As its file says, averaged."""
+    """The session as its file states it, averaged."""
     clips: tuple[Clip, ...]
     errors: tuple[RecordError, ...]
-    """What of the record was corrected."""
+    """Errors of the record that were corrected."""
     right: Baseline
     came: Baseline | None
     """The session as it came, fitted; None where nothing was corrected or set aside."""
     earlier: tuple[Baseline, ...]
-    """Of the history, oldest first, without clipped readings, on the scale of the session."""
+    """The history, oldest first, without clipped readings, on the scale of the session."""
     scales: tuple[CommonScale, ...]
-    """What all scale factors did together since, beyond what the applied vector can do."""
+    """Common changes of all scale factors since the history, beyond the reach of the applied vector."""
 
 
 def put_right(
@@ -113,7 +113,7 @@ def switched_on_like(earlier: CalibrationSession, session: CalibrationSession) -
 
 
 def diagnosed(session: PutRight, catalogue: Sequence[Cause]) -> Diagnosis:
-    """What the simulation gets wrong about a session whose record is corrected.
+    """Diagnoses a session whose record is corrected.
 
     What looks like gravity and cannot be is a factor of all sensors: the history is then brought to their scale.
     """
@@ -125,7 +125,7 @@ def diagnosed(session: PutRight, catalogue: Sequence[Cause]) -> Diagnosis:
 
 
 def diagnosed_so(session: PutRight, catalogue: Sequence[Cause]) -> Diagnosis:
-    """The same, with the history as it is."""
+    """Diagnoses a session whose record is corrected, with the history as it is."""
     rows, right, earlier = session.rows, session.right, session.earlier
     wrong = impossible_axes(right, earlier, catalogue)
     state = initial_state(right, earlier, catalogue) if wrong else searched(right, earlier, catalogue)

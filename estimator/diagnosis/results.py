@@ -13,14 +13,14 @@ class Separation(
     keys={"now": "separation", "then": "expected_separation"},
     order=("cause", "sensors", "now", "measurement", "then"),
 ):
-    """How far a rival cause is from the named one, and what would distinguish them."""
+    """Separation of a rival cause from the named one, and the measurement that would tell them apart."""
 
     cause: str
     sensors: tuple[str, ...]
     now: float
     """Separation in this session, standard errors of a reading."""
     measurement: str
-    """What to add, in words; empty when nothing that the planner knows would do."""
+    """Measurement to add, in words; empty when nothing that the planner knows would do."""
     then: float | None
     """Expected separation with that measurement."""
 
@@ -54,9 +54,9 @@ class OverSessions(Document, forms={"since": MOMENT}):
     """The evidence of several sessions of the unit, where one alone does not show an effect."""
 
     sessions: int
-    """That speak of it, this one among them."""
+    """Number of sessions that contribute evidence, this one among them."""
     e_value: float
-    """Without an effect it ever reaches 100 in at most one unit of a hundred."""
+    """E-value: without an effect it ever reaches 100 in at most one unit of a hundred."""
     form: str
     """``same``, ``varying`` from session to session, or ``since`` a session."""
     since: str | None
@@ -92,22 +92,22 @@ class Shared(
     shape: dict[str, float]
     """The shape parameters that all have, by unit, rows counted from 1."""
     shape_sigma: dict[str, float]
-    """Of those that are continuous, where the session determines them."""
+    """Sigmas of the continuous shape parameters, where the session determines them."""
     more: tuple[str, ...]
     """Sensors that follow it below what can be named of one alone."""
     more_amplitude: tuple[float, ...]
-    """Of these, in the unit of the finding's amplitudes for their kind."""
+    """Amplitudes of those sensors, in the unit of the finding's amplitudes for their kind."""
     more_sigma: tuple[float, ...]
     drawn_for: str
     """The sensor that shows it most, whose course is drawn."""
     course: tuple[float, ...]
     """(R,) m/s² (rad/s), as that sensor has it, about its mean."""
     measured: tuple[float, ...]
-    """(R,) the same as all sensors together read it, each scaled onto that one."""
+    """(R,) the course as measured by all sensors together, each scaled onto that one."""
     band: tuple[float, ...]
-    """(R,) one standard error of what they read."""
+    """(R,) one standard error of ``measured``."""
     shape_in_doubt: bool = False
-    """Whether every sensor may as well have a shape of its own: odds below a hundred for one of all."""
+    """Whether every sensor may as well have a shape of its own: odds below a hundred for a common one."""
 
 
 def _with_all_shapes(document: Json) -> Json:
@@ -133,9 +133,9 @@ class Finding(
     advice: str
     sensors: tuple[str, ...]
     p_value: float
-    """Of this or anything as strong anywhere in the catalogue, were there no effect (family-wise)."""
+    """Chance, without an effect, of this or anything as strong anywhere in the catalogue (family-wise)."""
     strength: float
-    """In standard errors of a reading."""
+    """Strength in standard errors of a reading."""
     amplitude: tuple[float, ...] = ()
     sigma: tuple[float, ...] = ()
     units: tuple[str, ...] = ()
@@ -146,16 +146,19 @@ class Finding(
     separations: tuple[Separation, ...] = ()
     ranking: tuple[Rival, ...] = ()
     parity: ParitySplit | None = None
-    """Where stand and sensor differ; None where there is no redundancy."""
+    """χ² in which stand and sensor differ; None where there is no redundancy."""
     new: bool | None = None
-    """Whether it came since the history; None without history or where the session cannot tell."""
+    """Whether it arose since the history; None without history or where the session cannot tell."""
     over_sessions: OverSessions | None = None
-    """Of what only several sessions show together: the amplitudes are theirs; None of what this session shows."""
+    """Evidence of several sessions where one alone shows too little; the amplitudes are then theirs. None where this
+    session shows the effect itself.
+    """
     shared: Shared | None = None
-    """Where all its sensors follow one course; None where each is a matter of its own."""
+    """The common course of all its sensors; None where each is a matter of its own."""
     since_power_on: float | None = None
-    """s, from switching on, where the amplitudes are counted from, to the first row; None where that is not known, and
-    of causes that have no such time."""
+    """Time from switching on, from which the amplitudes count, to the first row, s; None where it is not known, and for
+    causes without such a time.
+    """
 
     @property
     def nonlinear(self) -> dict[str, float]:
@@ -165,12 +168,12 @@ class Finding(
 
 @dataclass(frozen=True)
 class Course:
-    """How the applied vector must have run for all sensors to read what they did. R rows, c components."""
+    """The course of the applied vector that explains the readings of all sensors. R rows, c components."""
 
     order: str
-    """Along which it is smooth."""
+    """Order of the rows along which it is smooth."""
     components: tuple[str, ...]
-    """What changes: ``β``, ``α``, ``size``; empty where the whole vector turned once."""
+    """Changing components: ``β``, ``α``, ``size``; empty where the whole vector turned once."""
     values: tuple[tuple[float, ...], ...]
     """(R, c), rad; the size relative."""
 
@@ -181,11 +184,11 @@ class NoiseScale:
 
     kind: str
     factor: float
-    """By which they are too small; below one they are too large."""
+    """Factor by which they are too small; below one they are too large."""
     freedom: float
-    """Degrees of freedom that tell it."""
+    """Degrees of freedom of the factor."""
     sensors: tuple[str, ...] = ()
-    """Whose they are; none where they are those of all sensors of the kind."""
+    """Sensors concerned; empty where all sensors of the kind are."""
 
 
 @dataclass(frozen=True)
@@ -193,37 +196,37 @@ class Structure(Document):
     """Structure that no cause of the catalogue explains, and where it lives."""
 
     where: str
-    """In words: which sensors, harmonic of β, time, temperature; common or not."""
+    """Place of the structure in words: sensors, harmonic of β, time, temperature; common or not."""
     sensors: tuple[str, ...]
     p_value: float
     strength: float
     course: Course | None = None
-    """Of the applied vector, where it is common to all sensors and in no pattern."""
+    """Course of the applied vector, where the structure is common to all sensors and in no pattern."""
     of_record: bool = False
-    """Whether the record is mixed up: nothing that sensors or stand do looks like it."""
+    """Whether the record is mixed up: no effect of sensors or stand looks like it."""
 
 
 @dataclass(frozen=True)
 class Score(Document, optional=("rms_by_sensor",)):
-    """How well a model predicts readings it has not seen."""
+    """Quality of a model's prediction of readings that it has not seen."""
 
     rms: float
-    """Of the sensors of the block's kind, m/s² (rad/s)."""
+    """Root mean square error of the sensors of the block's kind, m/s² (rad/s)."""
     chi2_per_dof: float
     log_score: float
     """Mean log predictive density of a reading, in units of its own sigma."""
     rms_by_kind: dict[str, float] = field(default_factory=dict)
-    """The same of every kind of sensor, each in its own unit."""
+    """Root mean square error by kind of sensor, each in its own unit."""
     rms_by_sensor: dict[str, dict[str, float]] | None = None
-    """The same of every sensor by name, by kind; None where it is not stated."""
+    """Root mean square error by kind and name of sensor; None where it is not stated."""
 
 
 @dataclass(frozen=True)
 class Transfer(Document, forms={"started_at": MOMENT}):
-    """How well an earlier session agrees with amplitudes found in this one."""
+    """Agreement of an earlier session with amplitudes found in this one."""
 
     started_at: str | None
-    """Of the earlier session."""
+    """Start of the earlier session."""
     before: Score
     after: Score
 
@@ -246,15 +249,16 @@ class Limit(Document, order=("cause", "amplitude", "units", "visible", "reason")
 
     cause: str
     amplitude: tuple[float, ...] | None
-    """Per amplitude element, alone, at the sensor where it is seen worst, of what settles as it is at the first row;
-    None when the session cannot see it."""
+    """Limit of each amplitude alone, at the sensor that shows it worst; for an effect that settles, its size at the
+    first row. None when the session cannot see the cause.
+    """
     units: tuple[str, ...]
     reason: str
-    """Why not visible; empty when visible."""
+    """Reason why the cause is not visible; empty when it is."""
 
     @property
     def visible(self) -> bool:
-        """Whether the session can see it."""
+        """Whether the session can see the cause."""
         return self.amplitude is not None
 
 
@@ -267,7 +271,7 @@ class Diagnosis(
         "notes",
     ),
 ):  # fmt: skip
-    """What the simulation gets wrong about a session."""
+    """Diagnosis of a session: the effects that the simulation lacks."""
 
     unit: str
     findings: tuple[Finding, ...]
@@ -275,16 +279,16 @@ class Diagnosis(
     gain: Gain
     limits: tuple[Limit, ...]
     baseline: Calibration
-    """Under the baseline model."""
+    """Calibration under the baseline model."""
     calibration: Calibration
-    """Under the extended model."""
+    """Calibration under the extended model."""
     noise: tuple[NoiseScale, ...] = ()
     """Kinds of sensor whose stated standard errors the readings contradict."""
     notes: tuple[str, ...] = field(default=())
 
     @property
     def residuals_before(self) -> Residuals:
-        """Under the baseline model."""
+        """Residuals under the baseline model."""
         return self.baseline.residuals
 
     @property

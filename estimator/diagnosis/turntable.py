@@ -1,4 +1,4 @@
-"""What the simulation gets wrong about an alignment on a turntable: lever arms, and what else the turns do."""
+"""Diagnosis of an alignment on a turntable: lever arms, and other effects of the turns."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -32,13 +32,13 @@ SEPARATING = {
     "wobble": "turn in both directions, with stops a quarter turn apart",
     "delay or rate": "turn in the other direction as well",
 }
-"""What would tell a rival from a lever arm."""
+"""Measurements that would tell a rival from a lever arm."""
 WHERE = {
     "vibration": "a shift while the table turns, as from a vibrating bearing",
     "wobble": "a tilt of the turn axis while the table turns",
     "delay or rate": "readings that lag while the table turns, or follow its rate",
 }
-"""What is there where a rival fits far better than a lever arm."""
+"""Descriptions of a rival that fits far better than a lever arm."""
 COARSE = 5e-4
 """m of uncertainty from which a tenth of a centimetre is fine enough."""
 ALIKE = (
@@ -191,7 +191,7 @@ def _notes(arms: LeverArms, without: AlignmentResult, result: AlignmentResult) -
 
 
 def _error_without(without: AlignmentResult, result: AlignmentResult) -> str:
-    """By how much the zeros and mounting errors would be off."""
+    """The size of the errors of biases and mounting angles without the correction, as a message."""
     moved = {name: _value(without, name) - _value(result, name) for name in ("nabla_x", "nabla_y", "E_xz", "E_yz")}
     zeros = max(abs(moved["nabla_x"]), abs(moved["nabla_y"])) / MICRO_G
     mounting = max(abs(moved["E_xz"]), abs(moved["E_yz"])) / ARCSEC

@@ -56,19 +56,19 @@ SPANNED = 1e-3
 
 @dataclass(frozen=True)
 class BeyondJudgement:
-    """What the library says of the names at a place."""
+    """The library's verdict on the names at a place."""
 
     odds: float
     """ln odds of the library against the catalogue."""
     words: Key
-    """Of the terms that explain most without a name."""
+    """The terms that explain most without a name."""
     statistic: float
     """χ² that they explain."""
     named: tuple[Found, ...]
     kept: tuple[Found, ...]
     """Names that hold beside those terms."""
     fits: bool
-    """Whether the names describe what is there."""
+    """Whether the names describe the structure there."""
 
     @property
     def taken_back(self) -> tuple[GroupHypothesis, ...]:
@@ -77,7 +77,7 @@ class BeyondJudgement:
 
     @property
     def doubtful(self) -> bool:
-        """Whether the library is no worse than by `DISTINCT`."""
+        """Whether the library is within `DISTINCT` of the catalogue, or better."""
         return self.odds > -DISTINCT
 
 

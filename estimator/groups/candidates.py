@@ -1,4 +1,4 @@
-"""What can last from session to session: every candidate (cause, place, shape) and its columns in a session.
+"""Candidates that can last from session to session: every (cause, place, shape) and its columns in a session.
 
 Amplitudes are physical constants in the catalogue's signs and units, so that those of different sessions may be added:
 the phase of an eccentricity belongs to the encoder's zero, a coefficient to its sensor. What passes with its session
@@ -27,8 +27,9 @@ TANGENTIAL = frozenset({"cross-coupling", "axis-creep", "cross-axis-quadratic"})
 of the fitted one may change places where two of its components are equal."""
 
 HARMONICS = range(2, 6)
-"""Of β, nameless structure that is kept with every session: the first is absorbed or in the catalogue, and what an
-input polynomial up to the fifth order makes ends with the fifth."""
+"""Harmonics of β kept with every session as nameless structure: the first is absorbed or in the catalogue, and those of
+an input polynomial up to the fifth order end with the fifth.
+"""
 
 
 def lasting_causes() -> tuple[Signature, ...]:
@@ -37,7 +38,7 @@ def lasting_causes() -> tuple[Signature, ...]:
 
 
 def lasts(cause: Signature) -> bool:
-    """Whether a cause acts within a session and can last: no event at one row of one session."""
+    """Whether a cause acts within a session and can last, unlike an event at one row of one session."""
     return cause.can_be_modelled and not cause.clips and "row" not in cause.nonlinear_units
 
 
@@ -49,7 +50,7 @@ def columns_of(baseline: Baseline) -> Iterator[tuple[Block, Array]]:
 
 
 def candidates_of(baseline: Baseline, cause: Cause) -> Iterator[tuple[Block, Array]]:
-    """The same of one cause; nothing where the session does not provide what it needs."""
+    """The candidates of one cause; none where the session does not provide what it needs."""
     setting = baseline.setting
     if not cause.available(setting):
         return

@@ -1,4 +1,4 @@
-"""What the sessions of a unit, a unit type or a stand show together, which no single session can.
+"""Diagnosis of the sessions of a unit, a unit type or a stand together, where no single session shows enough.
 
 statistics → layout → evidence → selection → findings
 """
@@ -29,7 +29,7 @@ from estimator.session import CALIBRATIONS, CalibrationSession
 
 
 def diagnose_group(sessions: Sequence[CalibrationSession], level: str = UNIT) -> GroupDiagnosis:
-    """What several sessions show together.
+    """Diagnoses several sessions together.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def diagnose_group(sessions: Sequence[CalibrationSession], level: str = UNIT) ->
 def diagnose_statistics(
     statistics: Sequence[SessionStatistics], level: str = UNIT, sessions: Sequence[CalibrationSession] = ()
 ) -> GroupDiagnosis:
-    """The same from what was kept of every session, oldest first.
+    """Diagnoses a group from the statistics kept of its sessions, oldest first.
 
     ``sessions``: the same sessions, where they are at hand. Without them nothing is said of the measurement that would
     tell rivals apart, of what moved, or of learned terms, and beside every name stands that it may be something
@@ -108,7 +108,7 @@ def learned_terms(selection: GroupSelection, level: str, group: LackOfFitGroup) 
 
 
 def subject_of(session: SessionStatistics, level: str) -> str:
-    """Whose group it is."""
+    """The unit, type or stand that the group belongs to."""
     return {UNIT: session.unit, TYPE: session.unit_type, STAND: session.stand}[level]
 
 
@@ -137,7 +137,7 @@ def as_one(a: GroupFinding, b: GroupFinding) -> GroupFinding:
 
 
 def notes(selection: GroupSelection, effects: Sequence[Estimated]) -> list[str]:
-    """What a reader should know beside the findings."""
+    """Remarks for readers of the findings."""
     found: list[str] = []
     for f, h in selection.misfits:
         where = say(" on {sensor}", sensor=f.sensor) if f.sensor else ""

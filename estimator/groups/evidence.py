@@ -39,8 +39,9 @@ FAINT = 0.03
 hardly sees is known to the steps of the kept correlations only, and would be evidence of rounding."""
 
 GROWTH = 1.25
-"""From one session at which an effect is tried to begin to the next, counted from the first: one that begins between
-two of them loses at most a fifth of its sessions to the later."""
+"""Ratio between sessions at which an effect is tried to begin, counted from the first: one that begins between two of
+them loses at most a fifth of its sessions to the later.
+"""
 
 
 def log_sum(values: Array) -> Array:

@@ -1,4 +1,4 @@
-"""From what was found to what people read: amplitudes, forest plots, rivals."""
+"""Turns a group's selection into findings that people read: amplitudes, forest plots, rivals."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -39,7 +39,7 @@ class GroupSignature:
     amplitude: Array
     """(n, w) SI, of every session where they differ; else (1, w) of all."""
     pool: Pool
-    """With the finding alone in the joint fit: what else acts is left free in every session."""
+    """The pool with the finding alone in the joint fit: all other effects are left free in every session."""
 
     @classmethod
     def of(cls, selection: GroupSelection, found: Found, base: Pool) -> "GroupSignature":
@@ -189,7 +189,7 @@ def strength_of(effect: Estimated, pooled: float) -> float:
 
 
 def words_of(h: GroupHypothesis) -> str:
-    """Where a hypothesis acts, for people."""
+    """The place of a hypothesis, for people."""
     every = {"accelerometer": "every accelerometer", "gyroscope": "every gyro"}
     where = every.get(h.kind, "every sensor") if h.sensor == EVERY else h.sensor
     return say("{place} of type {subject}", place=where, subject=h.subject) if h.level == TYPE else where

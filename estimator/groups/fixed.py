@@ -31,7 +31,7 @@ from estimator.results import Calibration
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
 
 EMPIRICAL = "empirical-term"
-"""In place of a cause: a term that was learned, and has no physical name."""
+"""Takes the place of a cause: a term that was learned, and has no physical name."""
 
 
 @dataclass(frozen=True)
@@ -42,17 +42,17 @@ class FixedEffect:
     sensors: tuple[str, ...]
     """`EVERY` for every sensor of the kind; none for a cause of stand or fixture."""
     kind: str
-    """Of the sensors; empty without any."""
+    """Kind of the sensors; empty without any."""
     amplitude: tuple[float, ...]
     """SI, sensor after sensor."""
     sigma: tuple[float, ...]
-    """SI: what is not known of it in one session, σ and τ together; 0 of what the group does not see."""
+    """One sigma, SI, of the amplitude in a single session, σ and τ together; 0 where the group does not see it."""
     shape: float | None
     """Time constant, s; None where the cause has none."""
     varies: bool
-    """Whether it differs every time, so that the session has a say."""
+    """Whether it differs every time, so that the session's own readings count."""
     words: tuple[str, ...] = ()
-    """Of a learned term: what each amplitude multiplies, as in its equation; none of a cause."""
+    """Factors that each amplitude multiplies, as in the equation of a learned term; empty for a cause."""
 
 
 def fixed(finding: GroupFinding) -> FixedEffect:
@@ -70,15 +70,16 @@ def fixed(finding: GroupFinding) -> FixedEffect:
 
 
 def in_one_session(sigma: Sequence[float], spread: Sequence[float]) -> tuple[float, ...]:
-    """What is not known of amplitudes in one session, SI: of their means, NaN where the group does not see one, and τ
-    of each sensor in turn."""
+    """One sigma of the amplitudes in a single session, SI: of their means, NaN where the group does not see one, and τ
+    of each sensor in turn.
+    """
     width = len(sigma) // max(1, len(spread))
     return tuple(0.0 if isnan(s) else hypot(s, spread[k // width]) for k, s in enumerate(sigma))
 
 
 @dataclass(frozen=True, eq=False)
 class Added:
-    """What effects add in a session. q amplitudes."""
+    """Effects added to a session. q amplitudes."""
 
     columns: Array
     """(R, m, q) m/s² (rad/s) per unit amplitude."""
@@ -128,7 +129,7 @@ def taken_out(baseline: Baseline, added: Added) -> tuple[CalibrationSession, Arr
 
 
 def added_by(baseline: Baseline, effects: Sequence[FixedEffect], causes: Sequence[Accepted]) -> Added | None:
-    """What effects add in a session; None where it has none of them."""
+    """The effects that act in a session; None where it has none of them."""
     taken = {(identifier, sensor) for identifier, sensors in causes for sensor in sensors or ("",)}
     found: list[tuple[Array, Array, Array, bool]] = []
     for effect in effects:
@@ -170,7 +171,7 @@ def _places(
 def _learned(
     baseline: Baseline, effect: FixedEffect, taken: set[tuple[str, str]]
 ) -> Iterator[tuple[Array, Array, Array, list[str]]]:
-    """The same of a learned term; what of it this session lacks, as a temperature, is left out."""
+    """The places of a learned term; left out where this session lacks one of its factors, as a temperature."""
     sensor = effect.sensors[0] if effect.sensors else ""
     if (effect.cause, sensor) in taken or (sensor and sensor not in [s.name for s in baseline.session.sensors]):
         return

@@ -1,4 +1,4 @@
-"""What a group's findings are worth for sessions that took no part in their fit, and what they move.
+"""The benefit of a group's findings for sessions that took no part in their fit, and the parameters they move.
 
 The amplitudes are fixed on the first two thirds of the sessions and tried on those that came later.
 
@@ -89,7 +89,7 @@ def latest_errors(
 
 
 def moved(findings: Sequence[GroupFinding], session: CalibrationSession) -> tuple[Moved, ...]:
-    """How far the calibration of a session moves when the findings are modelled, what moves most first."""
+    """Changes of a session's parameters when the findings are modelled, the largest first."""
     baseline = baseline_of(averaged(session))
     residuals, names = WhitenedResiduals.of(baseline), [s.name for s in session.sensors]
     added = added_by(baseline, [fixed(f) for f in findings if f.subject in session.subjects], ())
@@ -108,7 +108,7 @@ def moved(findings: Sequence[GroupFinding], session: CalibrationSession) -> tupl
 
 
 PARTS = 3
-"""Of the sessions, every third one in each: all reach over the whole life of the group."""
+"""Parts of the sessions, every third one in each: all reach over the whole life of the group."""
 
 
 def names_that_predict(state: GroupSelection) -> GroupSelection:

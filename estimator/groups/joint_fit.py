@@ -54,7 +54,7 @@ class JointFit:
         return predictive(self.amplitude, self.covariance, others.U.sum(axis=0), others.F.sum(axis=0))
 
     def reduces(self, others: "JointFit") -> float:
-        """By how much the amplitudes reduce the χ² of other sessions."""
+        """Reduction of the χ² of other sessions by the amplitudes."""
         a = self.amplitude
         return float(2 * a @ others.U.sum(axis=0) - a @ others.F.sum(axis=0) @ a)
 

@@ -1,4 +1,4 @@
-"""What the sessions of a unit show together, and whether the latest of them has it.
+"""Effects that the sessions of a unit show together, and the probability that the latest of them has them.
 
 Theory
 ------
@@ -40,23 +40,23 @@ class Lasting:
     """An effect of a unit's sessions, as the latest of them may have it."""
 
     finding: GroupFinding
-    """Of all sessions."""
+    """The finding over all sessions."""
     others: GroupFinding
-    """The same with the amplitude that the others have, without the latest."""
+    """The finding with the amplitude of the other sessions, without the latest."""
     sessions: int
-    """That speak of it, the latest among them."""
+    """Number of sessions that contribute evidence, the latest among them."""
     began: int
-    """Of how many sessions before the latest it is known; what began with the latest itself has 0."""
+    """Number of sessions before the latest in which it is known to act; 0 where it began with the latest itself."""
     probability: float
     """Probability that the latest session has it."""
     ranking: tuple[Rival, ...]
-    """It and what the pool does not tell from it, likeliest first."""
+    """The effect and those that the pool cannot tell from it, likeliest first."""
 
 
 def lasting(
     records: Sequence[SessionStatistics], catalogue: Sequence[Cause], sessions: Sequence[CalibrationSession]
 ) -> list[Lasting]:
-    """What the sessions of a unit, oldest first, show together of what the latest of them can tell.
+    """The effects that the sessions of a unit, oldest first, show together and the latest can tell.
 
     ``sessions``: of the latest records, as many as are at hand. By them every name is held against what no catalogue
     has.
@@ -111,6 +111,8 @@ def _ranking(effect: Estimated) -> Iterator[Rival]:
 
 
 def probability(gained: float, others: int) -> float:
-    """That a session has what so many others have; ``gained``: ln of the factor by which its readings speak for it."""
+    """Probability that a session has an effect of so many others; ``gained``: ln of the factor by which its readings
+    favour it.
+    """
     odds = np.log(others + 1.0) + gained
     return float(1 / (1 + np.exp(-np.clip(odds, -50, 50))))

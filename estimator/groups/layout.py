@@ -18,9 +18,9 @@ from estimator.session import Array
 UNIT, TYPE, STAND = "unit", "type", "stand"
 LEVELS = (UNIT, TYPE, STAND)
 TERMS = "terms"
-"""In place of a cause: nameless structure that terms of the library describe."""
+"""Takes the place of a cause: nameless structure that terms of the library describe."""
 EVERY = "*"
-"""In place of a sensor's name: every sensor of the kind."""
+"""Takes the place of a sensor's name: every sensor of the kind."""
 
 SHARES = {
     UNIT: {UNIT: 0.5, TYPE: 0.0, STAND: 0.5},
@@ -47,7 +47,7 @@ class GroupHypothesis:
     shape: float | None
     width: int
     words: tuple[str, ...] = ()
-    """Of terms of the library: what they multiply."""
+    """Factors that terms of the library multiply."""
 
     @property
     def nameless(self) -> bool:
@@ -55,7 +55,7 @@ class GroupHypothesis:
 
     @property
     def group(self) -> tuple[str, str, str, str, str]:
-        """What is named: all shapes of it are one."""
+        """The thing that is named: all its shapes are one."""
         return self.level, self.subject, self.cause, self.sensor, self.kind
 
 
@@ -65,7 +65,7 @@ class Part:
 
     statistics: SessionStatistics
     sums: tuple[tuple[int, ...], ...]
-    """Of each further column, the own columns that it adds."""
+    """The own columns that each further column adds up."""
     hypotheses: dict[int, Array]
     """Width → (k,) numbers of the hypotheses of that width that the session speaks of."""
     columns: dict[int, Array]
@@ -83,7 +83,7 @@ class GroupLayout:
 
     @classmethod
     def of(cls, sessions: Sequence[SessionStatistics], level: str) -> "GroupLayout":
-        """Of sessions, oldest first."""
+        """The layout of sessions, oldest first."""
         wide, known, parts = level != UNIT, {}, []
         numbers: dict[int, dict[GroupHypothesis, int]] = {}
         alike: dict[tuple[str, str, str], Part] = {}

@@ -34,10 +34,10 @@ LAGS = (540.0, 1620.0)
 
 @dataclass(frozen=True, eq=False)
 class Factor:
-    """What a term is made of. R rows, w columns: 1, or 2 of a wave."""
+    """A factor of terms. R rows, w columns: 1, or 2 for a wave."""
 
     words: tuple[str, ...]
-    """Of every column, as in an equation."""
+    """Name of every column, as in an equation."""
     unit: str
     """Empty where it has none."""
     values: Array
@@ -49,11 +49,11 @@ class LibraryTerm:
     """A candidate of the library in one session. R rows, m sensors, w amplitudes."""
 
     words: tuple[str, ...]
-    """Of every column: what its amplitude multiplies."""
+    """The factor of every column that its amplitude multiplies."""
     unit: str
-    """Of the amplitudes."""
+    """Unit of the amplitudes."""
     variable: str
-    """What it is drawn over."""
+    """Variable over which it is drawn."""
     columns: Array
     """(R, m, w) m/s² (rad/s) per unit amplitude."""
 
@@ -158,5 +158,5 @@ def _of_vector(setting: Setting) -> Iterator[LibraryTerm]:
 
 
 def variable_of(factor: Factor) -> str:
-    """What a term is drawn over: β where it has a wave in it, else its first factor."""
+    """The variable over which a term is drawn: β where it holds a wave, else its first factor."""
     return "β" if "β" in factor.words[0] else factor.words[0].split("·")[0].strip("²⁴⁵")

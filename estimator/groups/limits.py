@@ -1,4 +1,4 @@
-"""What a pool finds with 95 % power, beside what its latest session would.
+"""Detection limits of a pool at 95 % power, beside those of its latest session.
 
 The e-value of the group reaches 1/α when ½·T·g − ½·ln(1 + κ²·r) + ln(prior) does, with r the pool's information in
 units of the first session's and g = κ²·r/(1 + κ²·r). A candidate of strength s has T ≥ threshold with 95 % power where
@@ -46,7 +46,7 @@ def limit_of(pool: Pool, known: Signature, level: str) -> PoolLimit:
 
 
 def _asked(h: GroupHypothesis, level: str) -> bool:
-    """Whether a hypothesis is one that the group's level speaks of: its own sensors, or the stand's causes."""
+    """Whether a hypothesis belongs to the group's level: its own sensors, or the stand's causes."""
     return h.level == STAND if not h.sensor else h.level == level and h.sensor != EVERY
 
 

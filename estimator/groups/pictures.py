@@ -1,4 +1,4 @@
-"""What sessions leave, pooled over what it depends on: measured minus simulated without an effect and with it.
+"""Residuals of the sessions, pooled over the variable they depend on, without an effect in the model and with it.
 
 Residuals of all sessions are averaged in bins of one variable, each with the weight of its noise. What the calibration
 absorbs of the effect is in neither: the picture shows what can be seen. Of an effect on the applied vector that is the
@@ -24,9 +24,9 @@ from estimator.session import Array, CalibrationSession
 BINS = 24
 """Points of a picture: fewer hide a third harmonic, more are noise."""
 ANGLES = ("δβ", "δα")
-"""Of the head: what an effect on the applied vector is drawn as, rad."""
+"""Angles of the head, rad, as which an effect on the applied vector is drawn."""
 BETA, TEMPERATURE, TIME, INPUT = "β", "(T − T̄)", "(t − t̄)", "a"
-"""What a picture is drawn over: rad, K, s, and the input as a part of the applied vector."""
+"""Variables over which a picture is drawn: rad, K, s, and the input as a part of the applied vector."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +40,7 @@ class Pictured:
     after: Array
     """(R,) m/s² (rad/s)"""
     variance: Array
-    """(R,) of the readings."""
+    """(R,) variance of the readings, (m/s²)² ((rad/s)²)."""
 
 
 def pictures(findings: Sequence[GroupFinding], sessions: Sequence[CalibrationSession]) -> list[Picture | None]:
@@ -104,7 +104,7 @@ def seen_as_angle(baseline: Baseline, residual: Array, angle: str) -> tuple[Arra
 
 
 def variable_of(finding: GroupFinding) -> str:
-    """What an effect depends on most plainly."""
+    """The variable that an effect depends on most clearly."""
     known = cause(finding.cause)
     if "temperature" in known.needs:
         return TEMPERATURE
@@ -144,13 +144,13 @@ def left_without(residuals: WhitenedResiduals, effect: Array) -> Array:
 
 
 def variance_of(baseline: Baseline, i: int) -> Array:
-    """(R,) of a sensor's readings, with what the stand's errors of each row add, (m/s²)² ((rad/s)²)."""
+    """(R,) variance of a sensor's readings with the stand's errors of each row, (m/s²)² ((rad/s)²)."""
     sigma = np.where(np.isfinite(baseline.row_sigma), baseline.row_sigma, 0.0)
     return np.asarray(baseline.variance[:, i] + ((baseline.row[:, i] * sigma) ** 2).sum(axis=-1))
 
 
 def values_of(baseline: Baseline, i: int, variable: str) -> Array:
-    """(R,) of what a picture is drawn over; the input of the sensor where the session lacks it."""
+    """(R,) values of the variable of a picture; the input of the sensor where the session lacks it."""
     setting = baseline.setting
     if variable == TIME and setting.time is not None:
         return setting.time - setting.time.mean()

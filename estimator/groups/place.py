@@ -38,7 +38,7 @@ class Where(NamedTuple):
 
     @classmethod
     def of(cls, h: GroupHypothesis) -> "Where":
-        """Where a hypothesis acts."""
+        """The place of a hypothesis."""
         return cls(h.level, h.subject, h.sensor, h.kind)
 
     def concerns(self, s: SessionStatistics) -> bool:
@@ -93,7 +93,7 @@ class PlaceMoments:
         return np.asarray(self.F.sum(axis=0))
 
     def given(self, shared: Sequence[Key] = (), free: Sequence[Key] = ()) -> "PlaceInput":
-        """The same with some candidates in the fit: of one amplitude in all sessions, or of one in each."""
+        """The statistics with some candidates in the fit: of one amplitude in all sessions, or of one in each."""
         U, F = self.U, self.F
         if free:
             freed = np.concatenate([self.slots[k] for k in free])
@@ -119,7 +119,7 @@ class PlaceInput:
     """(D, D) information of the pool, given what all sessions share."""
 
     def evidence(self, keys: Sequence[Key]) -> dict[Key, tuple[Array, float]]:
-        """Of each: (3,) ln Bayes factor in each form, the form's prior share included, and χ² in the pool."""
+        """ln Bayes factor (3,) in each form, the form's prior share included, and χ² in the pool, of each candidate."""
         found: dict[Key, tuple[Array, float]] = {}
         for width in {len(self.moments.slots[k]) for k in keys}:
             alike = [k for k in keys if len(self.moments.slots[k]) == width]
@@ -150,7 +150,7 @@ class PlacedFit:
     record: SessionStatistics
     baseline: Baseline
     scale: float
-    """By which its variance is larger than it says."""
+    """Factor by which its variance exceeds the stated one."""
 
     def elsewhere(self, places: Sequence[tuple[Where, Key]]) -> Iterator[Array]:
         """(R, m, w) columns of what was found at other places."""
@@ -167,7 +167,7 @@ class Traced:
     traces: dict[Key, Array]
     """(N, w) trace of every candidate, standard errors per unit amplitude."""
     causes: frozenset[Key]
-    """Which of them the catalogue has."""
+    """The candidates that the catalogue has."""
     z: Array
     """(N,) standard errors."""
 

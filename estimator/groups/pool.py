@@ -32,7 +32,7 @@ class SharedColumns:
 
 @dataclass(frozen=True, eq=False)
 class PoolModel:
-    """What was found so far."""
+    """The model so far: what was found."""
 
     shared: tuple[SharedColumns, ...] = ()
     absorbed: tuple[tuple[int, Place], ...] = ()
@@ -52,7 +52,7 @@ class PoolMoments:
     U: Array
     """(n, H, w) scores, 1/SI, given the joint fit."""
     evidence: Array
-    """(n, H, w) the same as they enter the evidence: those of estimated noise shrunk."""
+    """(n, H, w) scores as they enter the evidence: those of estimated noise shrunk."""
     F: Array
     """(n, H, w, w) 1/SI²."""
     cross: Array
@@ -73,10 +73,10 @@ class Pool:
     layout: GroupLayout
     model: PoolModel
     scale: Array
-    """(n,) by which the variance of each session is larger than it says."""
+    """(n,) factor by which the variance of each session exceeds the stated one."""
     moments: dict[int, PoolMoments]
     fit: JointFit
-    """Of what the model shares."""
+    """Fit of the amplitudes that the model shares."""
 
 
 def extended(part: Part, scale: float) -> tuple[Array, Array, Among]:

@@ -40,7 +40,7 @@ class Mean:
 
 
 def mean_of(U: Array, F: Array) -> Mean:
-    """Of sessions' scores U (n, w), 1/SI, and information F (n, w, w), 1/SI²."""
+    """The mean amplitude from sessions' scores U (n, w), 1/SI, and information F (n, w, w), 1/SI²."""
     largest = float(np.sqrt(np.median(np.diagonal(F, axis1=1, axis2=2).max(axis=1))))
     u, f = U / largest, F / largest**2
     freedom = int(np.linalg.matrix_rank(f, tol=1e-6, hermitian=True).sum())

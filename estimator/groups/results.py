@@ -1,4 +1,4 @@
-"""What a group's sessions show together; no algorithms. The JSON form is ``imu-fleet-diagnosis/1``."""
+"""Results of the diagnosis of a group; no algorithms. The JSON form is ``imu-fleet-diagnosis/1``."""
 
 from dataclasses import dataclass
 
@@ -11,17 +11,17 @@ class SessionAmplitude(Document, forms={"started_at": MOMENT}):
     """One line of a forest plot."""
 
     started_at: str | None
-    """In UTC; None where the file states none."""
+    """Start in UTC; None where the file states none."""
     unit: str
     amplitude: tuple[float, ...]
     """SI, element by element as in the finding."""
     sigma: tuple[float | None, ...]
-    """None where the session does not see the element."""
+    """One sigma of each amplitude; None where the session does not see the element."""
 
 
 @dataclass(frozen=True)
 class GroupRival:
-    """An explanation that the group does not tell from the named one, and what would."""
+    """An explanation that the group cannot tell from the named one, and the measurement that would."""
 
     cause: str
     sensors: tuple[str, ...]
@@ -32,9 +32,9 @@ class GroupRival:
     separation: float
     """Standard errors of a reading, on the pool."""
     measurement: str
-    """What to measure, in words; empty where nothing that the planner knows would tell."""
+    """Measurement to make, in words; empty where nothing that the planner knows would do."""
     sessions: int | None
-    """How many such sessions would tell them apart; None where none would."""
+    """Number of such sessions that would tell them apart; None where none would."""
 
 
 @dataclass(frozen=True)
@@ -62,16 +62,16 @@ class GroupFinding(Document, forms={"since": MOMENT}):
 
     cause: str
     level: str
-    """``unit``, ``type`` or ``stand``: whose it is."""
+    """Level of its subject: ``unit``, ``type`` or ``stand``."""
     subject: str
     """Serial of the unit, name of the type, id of the stand."""
     sensors: tuple[str, ...]
     """``*`` for every sensor of a kind; none for a cause of stand or fixture."""
     kind: str
-    """Of the sensors; empty without any."""
+    """Kind of the sensors; empty without any."""
     amplitude: tuple[float, ...]
     sigma: tuple[float | None, ...]
-    """None of an amplitude that the pool does not see."""
+    """One sigma of each amplitude; None where the pool does not see it."""
     units: tuple[str, ...]
     spread: tuple[float, ...]
     """τ of each sensor in turn, in the unit of its amplitudes."""
@@ -107,7 +107,7 @@ class GroupStructure:
 
 @dataclass(frozen=True)
 class PoolLimit(Limit, order=("cause", "amplitude", "units", "visible", "reason", "one_session")):
-    """What the pool would have found with 95 % power, and what its latest session would."""
+    """Limit of the pool at 95 % power, and that of its latest session."""
 
     one_session: tuple[float, ...] | None
     """The amplitude of the latest session alone; None when it cannot see the cause."""
@@ -141,7 +141,7 @@ class GroupGain(Document, optional=("before", "after")):
     """Root mean square residual, m/s² (rad/s), of every sensor in the latest session, by kind and name, without the
     findings; None where that session was not at hand."""
     after: dict[str, dict[str, float]] | None = None
-    """The same with them, at the amplitudes that earlier sessions fixed."""
+    """Root mean square residual with the findings, at the amplitudes that earlier sessions fixed; as ``before``."""
 
 
 @dataclass(frozen=True)
@@ -149,11 +149,13 @@ class EmpiricalTerm:
     """A term that was learned from the sessions: it describes, and names no physical cause."""
 
     equation: str
-    """With units."""
+    """Equation of the term, with units."""
     words: tuple[str, ...]
-    """What each amplitude multiplies: ``sin 3β``; of the applied vector with the angle it turns, ``δβ: sin 3β``."""
+    """Factor that each amplitude multiplies: ``sin 3β``; for the applied vector with the angle it turns, ``δβ: sin
+    3β``.
+    """
     sensors: tuple[str, ...]
-    """None where it acts on the applied vector."""
+    """Names of the sensors; empty where it acts on the applied vector."""
     subject: str
     amplitude: tuple[float, ...]
     sigma: tuple[float, ...]
@@ -165,11 +167,11 @@ class EmpiricalTerm:
     nearest: str
     """Catalogue cause that comes nearest."""
     separation: float
-    """From it, on the pool, standard errors of a reading."""
+    """Separation from that cause, on the pool, standard errors of a reading."""
     picture: Picture
     """Pooled residual against its variable, before and after."""
     level: str = ""
-    """``unit``, ``type`` or ``stand``: whose it is."""
+    """Level of its subject: ``unit``, ``type`` or ``stand``."""
 
 
 @dataclass(frozen=True)
@@ -182,7 +184,7 @@ class GroupDiagnosis(
     ),
     keys={"subject": "id"},
 ):  # fmt: skip
-    """What a group's sessions show together."""
+    """Diagnosis of a group of sessions."""
 
     level: str
     subject: str
@@ -190,15 +192,15 @@ class GroupDiagnosis(
     first: str | None
     """Start of the oldest session; None where it states none."""
     last: str | None
-    """The same of the latest."""
+    """Start of the latest session; None where it states none."""
     findings: tuple[GroupFinding, ...]
     terms: tuple[EmpiricalTerm, ...]
     structures: tuple[GroupStructure, ...]
     limits: tuple[PoolLimit, ...]
     gain: GroupGain | None
-    """None without findings, or with too few sessions to leave any out."""
+    """Gain on later sessions; None without findings, or with too few sessions to leave any out."""
     e_value: float
-    """Against nothing beside the findings."""
+    """E-value of the group against no effect beside the findings."""
     notes: tuple[str, ...] = ()
 
     @property

@@ -44,7 +44,7 @@ def batch(U: Array, F: Array) -> tuple[Array, Array]:
 
 
 def beside(blocks: Sequence[Block], U: Array, F: Array, found: Sequence[int]) -> tuple[Array, Array]:
-    """The same given the blocks ``found``; 0 of these."""
+    """The χ² and degrees of freedom of every block given the blocks ``found``; 0 of these."""
     if not found:
         return eigen_scores(blocks, U, F)
     starts = starts_of(blocks)

@@ -1,4 +1,4 @@
-"""What a group's sessions show together: forward selection, every finding weighed again given the others.
+"""Forward selection of a group's findings, each weighed again given the others.
 
 A name needs an e-value of 1/α for the group, given what was found before. A finding must hold without the session that
 shows it most: what one session shows by itself is that session's own affair, and is left free there. Where nameless
@@ -52,28 +52,28 @@ class Found:
 
 @dataclass(frozen=True, eq=False)
 class GroupSelection:
-    """What was found in a group."""
+    """The state of a group's selection."""
 
     layout: GroupLayout
     scale: Array
-    """(n,) by which each session's variance is larger than it says."""
+    """(n,) factor by which each session's variance exceeds the stated one."""
     found: tuple[Found, ...] = ()
     structures: tuple[tuple[GroupHypothesis, float], ...] = ()
     """Nameless structure, with its χ² in the pool."""
     misfits: tuple[tuple[GroupHypothesis, GroupHypothesis], ...] = ()
     """Names taken back, each with the structure that it left."""
     of_one_session: tuple[tuple[int, Place], ...] = ()
-    """What one session has by itself."""
+    """Effects that one session has by itself."""
     nameless: tuple[Place, ...] = ()
     """Structure that is in the fit."""
     barred: frozenset[tuple[str, ...]] = frozenset()
     aside: tuple[tuple[int, Place], ...] = ()
-    """What is left free in single sessions, since no cause describes what their place does."""
+    """Effects left free in single sessions, since no cause describes what happens at their place."""
     doubted: frozenset[tuple[str, ...]] = frozenset()
     """Names that may as well be something outside the catalogue."""
 
     def model(self, without: Found | None = None) -> PoolModel:
-        """Everything found, one finding left out."""
+        """The model of all findings, one left out."""
         model = PoolModel(absorbed=(*self.of_one_session, *self.aside))
         n = range(len(self.layout.parts))
         for place in self.nameless:
@@ -239,7 +239,7 @@ def without_lesser(state: GroupSelection) -> GroupSelection:
 
 
 def concerns(f: GroupHypothesis, structure: GroupHypothesis) -> bool:
-    """Whether structure lives where a finding acts: that of another stand does not."""
+    """Whether structure acts where a finding does; structure on another stand does not."""
     if not f.sensor or not structure.sensor:
         return f.sensor == structure.sensor and f.subject == structure.subject
     return f.sensor in (structure.sensor, "*") and (f.level != "unit" or f.subject == structure.subject)
@@ -255,7 +255,7 @@ def with_structure(state: GroupSelection, scale: Scale) -> GroupSelection | None
 
 
 def reselected(state: GroupSelection) -> GroupSelection:
-    """Every finding chosen again given the others; what no longer holds is dropped."""
+    """Every finding chosen again given the others; those that no longer hold are dropped."""
     for _ in range(3):
         before = [f.hypothesis.group for f in state.found]
         for old in state.found:

@@ -33,7 +33,7 @@ class Separator:
     sessions: tuple[CalibrationSession, ...]
 
     def measurements(self, selection: GroupSelection, effect: Estimated) -> list[tuple[str, int | None]]:
-        """For every rival of a finding: what to measure, in words, and how many sessions of it."""
+        """The measurement that would separate each rival of a finding, in words, and the number of such sessions."""
         if not effect.rivals or not self.sessions:
             return [("", None)] * len(effect.rivals)
         h, amplitude = effect.found.hypothesis, effect.mean.value
@@ -66,7 +66,7 @@ class SeparationPlan:
 
     @classmethod
     def of(cls, words: str, baseline: Baseline) -> "SeparationPlan":
-        """With the columns of every candidate."""
+        """The plan with the columns of every candidate."""
         return cls(words, WhitenedResiduals.of(baseline), tuple(columns_of(baseline)))
 
     def trace(self, h: GroupHypothesis) -> Array | None:
@@ -90,7 +90,9 @@ class SeparationPlan:
 
 
 def planned(session: CalibrationSession) -> list[SeparationPlan]:
-    """The same session again, and every proposal of another one; sessions that are many anyway are not averaged too."""
+    """Plans of the same session again and of every proposal of another one; sessions that are many anyway are not
+    averaged too.
+    """
     baseline = baseline_of(averaged(session))
     return [
         SeparationPlan.of(AGAIN, baseline),

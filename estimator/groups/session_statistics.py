@@ -1,4 +1,4 @@
-"""From a session to what is kept of it for its groups.
+"""Reduces a session to the statistics that are kept for its groups.
 
 The record is corrected first: clipped channels, slips of the record and readings that do not belong to the rest. Then
 every sensor's scatter is held against its stated noise, after what the session shows plainly by itself is taken out.
@@ -81,7 +81,7 @@ class WhitenedSession:
 
 
 def statistics_of(session: CalibrationSession) -> SessionStatistics:
-    """What is kept of a session of a programme that calibrates a block.
+    """The statistics of a session of a programme that calibrates a block.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What is kept of a session for its groups: score and information of every candidate, of fixed size.
+"""The statistics kept of a session for its groups: score and information of every candidate, of fixed size.
 
 Theory
 ------
@@ -23,7 +23,7 @@ FORMAT = "imu-session-statistics/2"
 HARMONIC = "harmonic"
 """Nameless structure: a wave of β."""
 STEPS = 32767
-"""Of a correlation from 0 to 1: what two bytes hold."""
+"""Steps of a correlation from 0 to 1, as two bytes hold them."""
 LISTS = 64
 """Lists of candidates that are shared: one for every build of a unit, and for what its sessions recorded."""
 
@@ -34,16 +34,16 @@ class Block:
 
     cause: str
     sensor: str
-    """Its name; empty for what acts on the applied vector."""
+    """Name of the sensor; empty for an effect on the applied vector."""
     kind: str
-    """Of the sensor; empty where there is none."""
+    """Kind of the sensor; empty where there is none."""
     shape: float | None
     """Time constant, s, or order of a harmonic; None where the cause has no shape."""
     width: int
 
 
 def _packed(kind: str) -> Form:
-    """Of arrays: little-endian bytes of a number type, deflated, as text."""
+    """Form of arrays: little-endian bytes of a number type, deflated, as text."""
     return Form(
         lambda values: base64.b64encode(zlib.compress(values.astype(kind).tobytes())).decode("ascii"),
         lambda text: np.frombuffer(zlib.decompress(base64.b64decode(text)), dtype=kind).astype(kind[1:]),
@@ -87,7 +87,7 @@ class SessionStatistics(
     stand: str
     """Empty where there is none."""
     started_at: str | None
-    """In UTC; None where the file states none."""
+    """Start in UTC; None where the file states none."""
     sensors: tuple[str, ...]
     blocks: tuple[Block, ...]
     size: Array
@@ -99,19 +99,21 @@ class SessionStatistics(
     reach: Array
     """(D,) largest change of a reading per unit amplitude, as part of the applied vector."""
     shrink: Array
-    """(B,) by which a score enters the evidence: below 1 where the noise is estimated from the session itself."""
+    """(B,) factor with which a score enters the evidence: below 1 where the session itself gives the noise."""
     energy: Array
     """(m,) χ² of the residuals of each sensor, what the session itself shows plainly taken out."""
     freedom: Array
-    """(m,) its degrees of freedom."""
+    """(m,) degrees of freedom of ``energy``."""
     whole: Array
     """(m,) χ² of the residuals of each sensor, with what the session itself shows plainly."""
     whole_freedom: Array
-    """(m,) its degrees of freedom."""
+    """(m,) degrees of freedom of ``whole``."""
     noise_factor: Array
-    """(m,) by which the stated standard errors were enlarged (or reduced), because the readings contradict them."""
+    """(m,) factor by which the stated standard errors were enlarged (or reduced), because the readings contradict
+    them.
+    """
     put_right: tuple[str, ...] = ()
-    """What of the record was corrected first, in words."""
+    """Corrections of the record, made first, in words."""
 
     @cached_property
     def starts(self) -> Array:
@@ -125,7 +127,7 @@ class SessionStatistics(
         return self.among(every[:, None], every)
 
     def among(self, rows: Array, columns: Array) -> Array:
-        """The same at some ``rows`` and ``columns``, int, of one shape or such as broadcast to one."""
+        """The information at some ``rows`` and ``columns``, int, of one shape or such as broadcast to one."""
         low, high = np.minimum(rows, columns), np.maximum(rows, columns)
         return np.asarray(self.correlation[high * (high + 1) // 2 + low] / STEPS)
 

@@ -61,7 +61,7 @@ class Library:
 
     @classmethod
     def of(cls, baseline: Baseline, sensor: str, named: Sequence[tuple[str, str, float | None]]) -> "Library":
-        """Of a place by its sensor's name; ``named`` causes (cause, sensor, shape) are left free."""
+        """The library at a place, by its sensor's name; ``named`` causes (cause, sensor, shape) are left free."""
         residuals, terms = WhitenedResiduals.of(baseline), library(baseline, sensor)
         columns = np.concatenate([t.columns for t in terms], axis=-1)
         raw, trace = np.linalg.norm(residuals.whitened(columns), axis=0), residuals.trace(columns)

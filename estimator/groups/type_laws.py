@@ -1,4 +1,4 @@
-"""What the laws over temperature of a type's sensors are alike in, learned from the histories of its units.
+"""Learns the distribution of the temperature laws of a type's sensors from the histories of its units.
 
 Each history is fitted by itself, at every scatter about its law. How often each scatter comes is the distribution that
 makes all histories together most likely (Laird 1978, J. Am. Stat. Assoc. 73, 805), by expectation and maximisation,
@@ -19,11 +19,11 @@ from estimator.results import Calibration
 from estimator.session import Array
 
 FEWEST_UNITS = 5
-"""With histories, for a law of their type."""
+"""Fewest units with histories for a law of their type."""
 FEWEST_SENSORS = 10
-"""The same: the spread over fewer is hardly known."""
+"""Fewest sensors for a law of their type: the spread over fewer is hardly known."""
 ROUNDS = 200
-"""Of expectation and maximisation; the chances of scatters no longer move by then."""
+"""Rounds of expectation and maximisation; the chances of scatters no longer move by then."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +36,7 @@ class UnitHistory:
 
 
 def type_laws(units: Sequence[UnitHistory], tolerances: Mapping[tuple[str, str], float]) -> tuple[TypeLaw, ...]:
-    """Of every kind of sensor and parameter with enough units.
+    """The laws of every kind of sensor and parameter with enough units.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def _law(units: Sequence[UnitHistory], place: tuple[str, str], tolerance: float)
 
 
 def _histories(unit: UnitHistory, kind: str, parameter: str, tolerance: float) -> Iterator[LawHistory]:
-    """Of the unit's sensors of a kind, where its sessions show a bend apart from level and line."""
+    """The histories of the unit's sensors of a kind, where its sessions show a bend apart from level and line."""
     for sensor in unit.reference.sensors:
         history = history_of(unit.sessions, sensor, parameter, tolerance) if sensor.kind == kind else None
         if history is not None and history.celsius.std() >= WARMED and shown_columns(history.celsius).shape[1] > 1:
@@ -87,7 +87,7 @@ def _fitted(histories: Sequence[LawHistory], about: float) -> tuple[Array, Array
 
 
 def _mean_and_spread(value: Array, variance: Array) -> tuple[float, float]:
-    """Of values (n,) with variances (n,): the mean, and one sigma of one more."""
+    """Mean of values (n,) with variances (n,), and one sigma of one more value."""
     n = len(value)
     found = mean_of((value / variance)[:, None], (1 / variance)[:, None, None])
     return float(found.value[0]), float(np.sqrt(found.spread**2 * (n - 1) / (n - 3) + found.sigma[0] ** 2))

@@ -30,7 +30,7 @@ class WeighedGroup:
     statistic: Array
     """(H,) χ² of the pool."""
     freedom: Array
-    """(H,) its degrees of freedom."""
+    """(H,) degrees of freedom of ``statistic``."""
     forms: Array
     """(3, H) ln Bayes factor, the form's prior share included."""
     since: Array

@@ -44,7 +44,7 @@ def diagnose(
     catalogue: Sequence[Cause] = CATALOGUE,
     records: Sequence[SessionStatistics] | None = None,
 ) -> Diagnosis:
-    """What the simulation gets wrong about a session, with what only all sessions of the unit together show.
+    """Diagnoses a session with its history, and names the effects that only all sessions of the unit together show.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def diagnose(
 
 @remembered
 def record_of(earlier: CalibrationSession, catalogue: tuple[Cause, ...]) -> SessionStatistics:
-    """What is kept of a session of the history, its record corrected."""
+    """The statistics of a session of the history, its record corrected."""
     _, right = undo_record_errors(earlier_baseline(earlier, catalogue), (), catalogue)
     return kept(right.session, with_fitted_flip(right), ())
 
@@ -157,7 +157,7 @@ def finding_of(effect: Lasting) -> Finding:
 
 
 def words_of_end(effect: Lasting) -> str:
-    """That the session lacks what the earlier ones have."""
+    """States that the session lacks an effect of the earlier ones."""
     known = cause(effect.finding.cause).name.capitalize()
     where = say(" on {sensors}", sensors=effect.finding.sensors[0]) if effect.finding.sensors else ""
     parts = {"known": known, "place": where, "sessions": effect.sessions - 1}

@@ -32,7 +32,7 @@ class Changes:
     scatter: float = 0.0
     """τ, rad or relative."""
     dofs: tuple[tuple[float | None, float | None], ...] = ()
-    """Of each sensor the degrees of freedom of both covariances; none where all noise is known."""
+    """Degrees of freedom of both covariances, sensor by sensor; empty where all noise is known."""
 
     @cached_property
     def rows(self) -> int:
@@ -41,7 +41,7 @@ class Changes:
 
     @cached_property
     def covariance(self) -> Array:
-        """(m r, m r) of both sessions, and what sensors do on their own, rad² or relative²."""
+        """(m r, m r) covariance of the changes: both sessions and the scatter of single sensors, rad² or relative²."""
         return self.current + self.origin + self.scatter**2 * np.eye(len(self.y))
 
     @cached_property
@@ -69,11 +69,11 @@ class AxisPairs:
 
     names: tuple[str, ...]
     axes: Array
-    """(m, 3) of this session, unit vectors."""
+    """(m, 3) axes in this session, unit vectors."""
     frames: Array
     """(m, 3, 2) tangents that its covariance turns them along, dimensionless."""
     origins: Array
-    """(m, 3) of the reference."""
+    """(m, 3) axes in the reference, unit vectors."""
     origin_frames: Array
     """(m, 3, 2)"""
     current: Array
@@ -81,7 +81,7 @@ class AxisPairs:
     origin: Array
     """(2 m, 2 m) rad²."""
     dofs: tuple[tuple[float | None, float | None], ...]
-    """Of each sensor the degrees of freedom of both covariances; none where all noise is known."""
+    """Degrees of freedom of both covariances, sensor by sensor; None where the noise is known."""
 
     def about(self, turn: Array) -> Changes:
         """The changes that a rotation ``turn`` (3, 3) of the block, dimensionless, leaves: along the reference's
@@ -119,7 +119,7 @@ def axis_pairs(current: Calibration, reference: Calibration, kind: str) -> AxisP
 
 
 def scale_changes(current: Calibration, reference: Calibration, kind: str) -> Changes | None:
-    """Of the scales of one kind of sensor; None where no scale is known in both sessions."""
+    """The scale changes of one kind of sensor; None where no scale is known in both sessions."""
     known = _known(current, reference, kind, "scale")
     elements = [f"{now.name}.scale" for now, _, _ in known]
     covariance, origin = _joint(current, elements), _joint(reference, elements)
@@ -138,7 +138,7 @@ Known = list[tuple[SensorCalibration, SensorCalibration, Deviation]]
 
 
 def _dofs(known: Known) -> tuple[tuple[float | None, float | None], ...]:
-    """Of each sensor's change the degrees of freedom of both sessions."""
+    """Degrees of freedom of this session and of the reference, for each sensor's change."""
     return tuple((d.current_dof, d.origin_dof) for _, _, d in known)
 
 

@@ -1,4 +1,4 @@
-"""What all sensors of a block do together since the reference, apart from what each of them does alone.
+"""The change since the reference that all sensors of a block share, separated from what each sensor did alone.
 
 A block that sits otherwise in its fixture, a fixture or a stand that has turned, a wrong gravity: all of them move
 every sensor at once and say nothing of any sensor. The changes y of all axes (scales) since the reference session are
@@ -55,7 +55,7 @@ SCATTERS = (0.0, 0.025, 0.05, 0.1, 0.2)
 """τ as parts of the tolerance, the least first, because it leaves the smallest drifts out; beyond a fifth a drift of
 the whole tolerance, 4.2 τ at the level, would pass for wander."""
 NOTHING = 0.1
-"""What a sensor may do on its own without anybody's concern, part of the tolerance: what its decision hardly feels."""
+"""The wander of a single sensor that concerns nobody, as a part of the tolerance: its decision hardly feels it."""
 FEWEST = {AXES: 4, SCALES: 3}
 """Sensors that it takes to tell a common change from a single one: of three axes (two scales) that parted any may have
 moved."""
@@ -63,14 +63,14 @@ PARALLEL = 1e-3
 """Smallest eigenvalue of AᵀA per sensor below which a turn about them does not show: the mean sin² of the
 axes' angles to one line (1.8° root mean square)."""
 ROUNDS = 10
-"""Of Gauss–Newton on the rotations; two are usual."""
+"""Rounds of Gauss–Newton on the rotations; two are usual."""
 NEGLIGIBLE = 1e-12
 """rad (2e-7″): a missing turn that changes no figure."""
 
 
 @dataclass(frozen=True)
 class CommonMotion:
-    """What the axes, or the scales, of all sensors of one kind did together since the reference."""
+    """The change of axes, or of scales, that all sensors of one kind have shared since the reference."""
 
     kind: str
     """``accelerometer`` or ``gyroscope``."""
@@ -82,14 +82,14 @@ class CommonMotion:
     value: tuple[float, ...]
     """Rotation vector in block axes, rad (3), or relative change of all scales (1); empty where it is not known."""
     covariance: tuple[tuple[float, ...], ...]
-    """Of the value, total, of both sessions."""
+    """Total covariance of the value, from both sessions."""
     p_value: float | None
     """Chance of a common change at least this large when nothing moved together; None where the block's frame is held
     by the axes themselves, so that a common turn cannot be seen."""
     sensors: tuple[str, ...]
-    """That the common change rests on."""
+    """Names of the sensors that the common change rests on."""
     left_out: tuple[str, ...]
-    """That moved on their own, or cannot be distinguished from one that did; the most evident first."""
+    """Names of the sensors that moved on their own, or cannot be told from one that did; the most evident first."""
 
     @property
     def size(self) -> float:
@@ -120,7 +120,7 @@ class Split:
 
     motion: CommonMotion
     residuals: dict[str, Deviation]
-    """By sensor; empty unless the common part was separated."""
+    """Residual of each sensor, by name; empty unless the common part was separated."""
 
 
 def common_motion(
@@ -145,7 +145,7 @@ def common_motion(
 
 @dataclass(frozen=True, eq=False)
 class _Agreed:
-    """What the sensors that agree say of the common change."""
+    """The common change by the sensors that agree on it."""
 
     changes: Changes
     excluded: list[int]
@@ -153,7 +153,7 @@ class _Agreed:
     gain: Array
     """(k, m r) x = gain·y, dimensionless."""
     sets: Sets
-    """Of sensors that may have moved, that each one's own change is averaged over."""
+    """The sets of sensors that may have moved, over which each sensor's own change is averaged."""
 
     @property
     def value(self) -> Array:
@@ -162,7 +162,7 @@ class _Agreed:
 
     @property
     def covariance(self) -> Array:
-        """(k, k) of x, rad² or relative²."""
+        """(k, k) covariance of x, rad² or relative²."""
         return self.gain @ self.changes.covariance @ self.gain.T
 
 
@@ -185,7 +185,7 @@ def split_axes(kind: str, pairs: AxisPairs, tolerance: float, *, is_seen: bool) 
 
 
 def _split_scales(kind: str, changes: Changes, tolerance: float, bounds: tuple[float, float]) -> Split:
-    """The common factor and the rest; ``bounds``: what the applied vector can have changed it by, relative."""
+    """The common factor and the rest; ``bounds``: the relative changes that the applied vector can account for."""
     if not _is_separable(SCALES, changes):
         return Split(_nothing(kind, SCALES, TOO_FEW, changes.names), {})
     agreed = _agreed(changes, tolerance)
@@ -205,7 +205,9 @@ def _is_separable(quantity: str, changes: Changes) -> bool:
 
 
 def _agreed(changes: Changes, tolerance: float) -> _Agreed | None:
-    """Who moved, by the smallest scatter with which a majority agrees; None where that cannot be decided."""
+    """Finds the sensors that moved at the smallest scatter with which a majority agrees; None where it cannot be
+    decided.
+    """
     tried = (replace(changes, scatter=share * tolerance) for share in SCATTERS)
     agreement = next(((some, excluded) for some in tried if (excluded := moved(some)) is not None), None)
     if agreement is None:
@@ -233,5 +235,5 @@ def _separated(part: tuple[str, str], agreed: _Agreed, value: Array, covariance:
 
 
 def _nothing(kind: str, quantity: str, state: str, names: tuple[str, ...]) -> CommonMotion:
-    """Nothing was taken off, and why."""
+    """A result that takes nothing off, with the reason as its ``state``."""
     return CommonMotion(kind, quantity, state, (), (), None, names, ())

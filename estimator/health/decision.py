@@ -1,7 +1,7 @@
-"""A session judged against the unit's reference session: every parameter of every sensor. The rule: see `rule`.
+"""Judges every parameter of every sensor of a session against the unit's reference session, by the rule of `rule`.
 
-What temperature is worth by the unit's law (`temperature_law`), then what all sensors did together (`common_motion`) is
-taken off first: a sensor is judged on its residual.
+The effect of temperature by the unit's law (`temperature_law`), then the change that all sensors share
+(`common_motion`), are taken off first: a sensor is judged on its residual.
 """
 
 from collections.abc import Mapping
@@ -20,7 +20,7 @@ from estimator.results import COVERAGE, Calibration, Estimate, SensorCalibration
 from estimator.session import Array
 
 PARAMETERS = ("scale", "bias", "quadratic", "axis", "misalignment")
-"""In the order judged."""
+"""The parameters in the order in which they are judged."""
 FLOOR = 1e-9
 """Standard uncertainties below this part of the tolerance are taken as this part of it: without noise the rule would
 divide by zero."""
@@ -50,15 +50,15 @@ class ParameterJudgement:
     """Smallest |y| that counts as a change at the level of the session."""
     verdict: str
     change: tuple[float, ...] | None = None
-    """What was judged, with its sign and direction: one number, for the axis two along the reference's tangents."""
+    """The change that was judged, signed: one number, or for the axis two along the reference's tangents."""
     change_own: tuple[float, ...] | None = None
     """Standard uncertainty of each number of the change that this session brings."""
     change_origin: tuple[float, ...] | None = None
-    """The same of the reference, common to all sessions that are judged against it."""
+    """The reference's contribution in the same form, common to all sessions that are judged against it."""
     common: float | None = None
-    """What all sensors did together, taken off before: angle of the block's turn for the axis, factor for scale."""
+    """The change shared by all sensors, taken off before: angle of the block's turn for the axis, factor for scale."""
     common_sigma: float | None = None
-    """One sigma of it."""
+    """One sigma of the common change."""
     common_p: float | None = None
     """Chance of a common change as large when nothing moved together."""
     coverage_factor: float = COVERAGE
@@ -66,7 +66,7 @@ class ParameterJudgement:
     dof: float | None = None
     """Effective degrees of freedom of u; None when the noise is known."""
     temperature_correction: TemperatureCorrection | None = None
-    """What was taken off for the session's temperature before it was judged; None where nothing was."""
+    """The effect of the session's temperature, taken off before judging; None where nothing was."""
 
 
 @dataclass(frozen=True)
@@ -107,7 +107,7 @@ class _Assessed:
     """Coverage factor for the degrees of freedom of u."""
     probability_out: float
     critical_scale: float
-    """What a factor of `critical_factors` is multiplied by to become a deviation."""
+    """Factor that turns a value of `critical_factors` into a deviation."""
     is_vector: bool
 
 
@@ -166,7 +166,7 @@ def _as_measured(
 
 
 def _assess(case: _Case, k: float) -> _Assessed | None:
-    """None where the change is not known."""
+    """Reduces a case to the numbers of the rule; None where the change is not known."""
     change = case.change
     if change is None:
         return None
@@ -245,7 +245,7 @@ def _sigmas(covariance: Array) -> tuple[float, ...]:
 
 
 def _value(sensor: SensorCalibration, parameter: str) -> float | None:
-    """Of a parameter that is a number."""
+    """The measured value of a scalar parameter; None where it is not known."""
     estimate: Estimate = getattr(sensor, parameter) or NOT_SEEN
     return estimate.value
 

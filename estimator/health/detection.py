@@ -1,4 +1,4 @@
-"""What has changed in a parameter: the odds of one change, corrected for all that was tried.
+"""Detects changes in a parameter by the odds of a change against none, corrected for all that was tried.
 
 Null: noise of the stated covariance and the walk that half of the type's parameters do not exceed (`pooled`). Its rival
 is one change of any kind, time and size (`odds`); the p-value is the chance of odds so high where nothing happens. The
@@ -43,25 +43,25 @@ class Change:
     sigma: Array
     """(k,) one sigma of it."""
     p_value: float
-    """Over all hypotheses, of this one parameter."""
+    """p-value over all hypotheses, for this one parameter."""
     column: Array
-    """(n,) its shape, per unit of size."""
+    """(n,) shape of the change, per unit of size."""
     wanders: bool = False
-    """Whether a walk is likelier than any one change."""
+    """Whether a walk is likelier than any single change."""
 
 
 @dataclass(frozen=True, eq=False)
 class Detected:
-    """What one history shows."""
+    """The changes, and the effect of temperature, that were found in one history."""
 
     p_value: float
-    """Of any change at all."""
+    """Chance of evidence as strong for any change where there is none."""
     changes: tuple[Change, ...]
     """Found, the most evident first."""
     warmth: Warmth | None
-    """None where the sessions do not span temperature."""
+    """Effect of temperature; None where the sessions do not span temperature."""
     readings: Readings
-    """With the temperature where it was found to act whatever else does."""
+    """The readings, with temperature as a regressor where its effect was found."""
 
     @property
     def over(self) -> tuple[Change, ...]:
@@ -117,7 +117,8 @@ def detect(readings: Readings, walk: float, dof: Array, temperature: Array, leve
 
 def _walks(readings: Readings, explained: Readings, walk: float) -> bool:
     """Whether a walk explains the readings better than the changes that were taken into the base: by the largest
-    likelihoods, each number that was fitted costing half the logarithm of the sessions (Schwarz 1978)."""
+    likelihoods, each fitted number costing half the logarithm of the number of sessions (Schwarz 1978).
+    """
     n, k = readings.value.shape
     price, changes = np.log(n) / 2, explained.base.shape[1] - readings.base.shape[1]
     wandered = _likelihood(readings, WALKS) - price
@@ -194,7 +195,7 @@ def _wandering(readings: Readings, p_value: float) -> Change:
 
 
 def _shrunk(squared: float, k: int, dof: float) -> float:
-    """What readings are multiplied by so that a statistic of k squares is as rare as with known noise."""
+    """Factor on the readings that makes a statistic of k squares as rare as it would be with known noise."""
     if not np.isfinite(dof) or squared <= 0:
         return 1.0
     if k == 2:  # P(F > s/2) = (1 + s/dof)^(−dof/2), P(χ² > s) = exp(−s/2)
@@ -214,6 +215,6 @@ def _freedom(null: Fits, readings: Readings, dof: Array) -> Array:
 
 
 def _with(readings: Readings, column: Array) -> Readings:
-    """With one more column that acts; the level that is forecast is the one after the last session."""
+    """The readings with one more regressor; the level that is forecast is the one after the last session."""
     base = np.concatenate([readings.base, column[:, None]], axis=1)
     return replace(readings, base=base, now=np.append(readings.now, column[-1]))

@@ -18,8 +18,9 @@ class Deviation:
     """A measured change."""
 
     vector: Array
-    """(1,) for scale (relative), bias (m/s²; rad/s), quadratic (s²/m); (2,) for the axis, along the tangents of the
-    reference axis, rad."""
+    """Components of the change: (1,) for scale (relative), bias (m/s²; rad/s), quadratic (s²/m); (2,) for the axis,
+    along the tangents of the reference axis, rad.
+    """
     current: Array
     """(1, 1) or (2, 2), the share of this session in the covariance, unit of the vector squared."""
     origin: Array
@@ -28,7 +29,7 @@ class Deviation:
     current_dof: float | None = None
     """Degrees of freedom of ``own``; None when the noise is known."""
     origin_dof: float | None = None
-    """The same of ``origin``."""
+    """Degrees of freedom of ``origin``; None when the noise is known."""
 
     @property
     def dof(self) -> float | None:
@@ -40,7 +41,9 @@ class Deviation:
 
     @property
     def covariance(self) -> Array:
-        """(2, 2) for the axis, rad², otherwise (1, 1), SI or relative squared; of both sessions."""
+        """Covariance of the change, from both sessions: (2, 2) for the axis, rad², otherwise (1, 1), SI or relative
+        squared.
+        """
         return self.current + self.origin
 
     @property

@@ -77,7 +77,7 @@ def beyond_discs(centers: Array, sigmas: Array, radius: float) -> Array:
 
 @dataclass(frozen=True)
 class Length:
-    """What a measured vector says of the length of the true one."""
+    """Estimate of the length of a true vector from a measured one."""
 
     value: float
     """Median-unbiased: a true length of this would be measured longer as often as shorter; 0 if noise explains all."""

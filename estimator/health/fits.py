@@ -53,9 +53,9 @@ class Readings:
     sigma: Array
     """(n, k) standard uncertainties, in tolerances."""
     base: Array
-    """(n, b) columns that act whatever else does, the first of them 1; any unit."""
+    """(n, b) columns that act in every hypothesis, the first of them 1; any unit."""
     now: Array
-    """(b,) the same for the level that is forecast: after all steps, at the mean temperature."""
+    """(b,) values of these columns for the level that is forecast: after all steps, at the mean temperature."""
     tails: Array = field(default_factory=NORMAL.copy)
     """(4,) chance of each law of errors, of `FREEDOMS`; likelihoods take the first, chances of an alarm all."""
 
@@ -82,7 +82,7 @@ class Fits:
     gain: Array
     """(Q, k, n) weights of the readings in the last level, dimensionless."""
     variance: Array
-    """(Q, k) of that level, sizes known; T²."""
+    """(Q, k) variance of that level, sizes known; T²."""
     root: Array
     """(Q, k, n, n) lower triangular, C = root·rootᵀ, T."""
     frame: Array

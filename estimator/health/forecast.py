@@ -1,4 +1,4 @@
-"""When a parameter reaches its tolerance, and the risk of waiting. Time in years from the last session.
+"""The time at which a parameter reaches its tolerance, and the risk of waiting. Years from the last session.
 
 Every draw of `posterior` goes on: l(h) = l + r·h + a·(aging) + q·B(h), and is out of tolerance once |l(h)| ≥ T; of an
 axis |l| is the length, the tolerance a disc. Between two dates at which a draw is followed, a walk from x to y that is
@@ -41,7 +41,7 @@ DISTANCES = np.linspace(0.0, 1.0, 41)
 PATHS, SEED = 1601, 1986
 """Random walks that are followed, more than there are draws, so that no parameter takes one twice; and their seed."""
 FRACTIONS = (np.arange(8) + 0.5) / 8
-"""(8,) of the time ahead, at which a drift may have begun: the middle of eighths."""
+"""(8,) fractions of the time ahead, at which a drift may have begun: the middle of eighths."""
 
 
 def followed(draws: Draws, ahead: Array, rng: np.random.Generator) -> Array:
@@ -117,7 +117,7 @@ def _hazard(length: Array, rate: Array, k: int) -> Array:
 
 
 def _looked_up(tables: tuple[Array, ...], length: Array) -> list[Array]:
-    """(N, h) of each table (h, 41) over `DISTANCES`, linear between them, at (N, h) lengths from 0 to 1 T."""
+    """(N, h) values of each table (h, 41) over `DISTANCES`, linear between them, at (N, h) lengths from 0 to 1 T."""
     steps = len(DISTANCES) - 1
     beyond = length * steps
     place = np.minimum(beyond.astype(int), steps - 1)
@@ -152,7 +152,7 @@ def _beyond(distance: Array, sigma: Array, k: int) -> Array:
 
 
 def reach(chance: Array, level: float, ahead: Array = AHEAD) -> Array:
-    """When the chance of having reached the tolerance passes a level.
+    """The time at which the chance of having reached the tolerance passes a level.
 
     Parameters
     ----------

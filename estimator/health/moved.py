@@ -1,4 +1,4 @@
-"""Which sensors moved on their own: generalised least squares, likelihood ratios and rivals (see `common_motion`).
+"""Finds the sensors that moved on their own: generalised least squares, likelihood ratios, rivals (`common_motion`).
 
 Where the noise was estimated from ν degrees of freedom, χ²/r is Fisher's F of r and ν; limits are widened by as much.
 """
@@ -19,7 +19,7 @@ LEVEL = 0.001
 RIVAL = 2 * np.log(100)
 """A rival explanation whose χ² is higher by less than this (likelihood a hundredth) is not ruled out."""
 FEWEST_AGREEING = {1: 2, 2: 3}
-"""By rows a sensor: three axes that kept their angles, two scales that kept their ratio."""
+"""Fewest sensors that must agree, by rows a sensor: two scales that kept their ratio, three axes their angles."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +34,7 @@ class MotionFit:
 
 
 def fit(changes: Changes, inside: list[int]) -> MotionFit:
-    """From the sensors ``inside``; the others are free.
+    """Fits the common change to the sensors ``inside``; the others are free.
 
     C is widened by S = s²·A·Aᵀ, which changes neither x nor a residual, but keeps a covariance that is singular
     along A (a frame held by the axes themselves) from being inverted as it is.
@@ -101,7 +101,7 @@ def chi2_limit(level: float, rows: int, dof: float | None) -> float:
 
 
 def is_majority(changes: Changes, excluded: list[int]) -> bool:
-    """Whether the sensors that remain say what the block did: more than half, and enough to agree on it."""
+    """Whether the sensors that remain determine the common change: more than half, and enough to agree on it."""
     m = len(changes.names)
     return 2 * (m - len(excluded)) > m and m - len(excluded) >= FEWEST_AGREEING[changes.rows]
 

@@ -35,9 +35,9 @@ DRAWS = 1000
 FEW, PLAIN = 200, 0.2
 """Draws that are enough for a chance above it, which decides nothing: it is right to a seventh of itself."""
 SEED = 1995
-"""Of the draws, so that the same history has the same p-value always."""
+"""Seed of the draws, fixed so that the same history always has the same p-value."""
 WILD = 6.0
-"""As far out as one session in some thousands is."""
+"""Factor by which a wild session's errors are widened: about one session in several thousand is as far out."""
 FELT = 1e-4
 """Weight of a law of errors below which it changes no p-value that a level asks for."""
 COMMON = 0.1
@@ -45,13 +45,14 @@ COMMON = 0.1
 WANDERS = np.array([0.06, 0.12, 0.25, 0.5])
 """(4,) T a root year, beyond what the type does anyway."""
 SHARES = {Kind.JUMP: 1 / 3, Kind.LATE: 1 / 9, Kind.START: 1 / 9, Kind.AGING: 1 / 9, Kind.WALK: 1 / 3}
-"""Of the mixture: a jump, a drift and a walk alike, for it is not the rarest change that matters least; the three sorts
-of drift, which look much alike, share one part."""
+"""Shares of the mixture. A jump, a drift and a walk have equal parts, since rare changes matter no less; the three
+sorts of drift, which look much alike, share one part.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class Odds:
-    """What speaks for any change."""
+    """The odds of a change, in total and by kind, with their p-value."""
 
     total: float
     """log B"""
@@ -62,7 +63,7 @@ class Odds:
 
 @dataclass(frozen=True, eq=False)
 class Mixture:
-    """Everything of B that depends on the schedule alone; k components, G hypotheses that have a shape."""
+    """The parts of B that depend on the schedule alone; k components, G hypotheses that have a shape."""
 
     unit: Array
     """(k, n, H) whitened shapes of length one; 0 where a shape leaves no trace."""
@@ -112,7 +113,9 @@ class Mixture:
 
 
 def mixture(null: Fits, time: Array, visible: Array) -> Mixture:
-    """Of the fits at the one walk of the null; ``visible`` (H,) bool: shapes that leave a trace."""
+    """Builds the mixture from the fits at the single walk of the null; ``visible`` (H,) bool marks the shapes that
+    leave a trace.
+    """
     shape, kind, share, size2 = [], [], [], []
     family, information = null.family, null.information[0]
     for place in np.flatnonzero(np.isin(PART_KINDS, list(SHARES))):
@@ -148,7 +151,7 @@ def _modes(null: Fits, time: Array) -> tuple[Array, Array]:
 
 
 def odds(mixed: Mixture, z: Array, tails: Array = NORMAL) -> Odds:
-    """Of one whitened history (k, n), freed of the base; ``tails`` (4,) the weight of each of `FREEDOMS`."""
+    """The odds for one whitened history (k, n), freed of the base; ``tails`` (4,) the weight of each of `FREEDOMS`."""
     shaped, wandered = (part[0] for part in mixed.log_parts(z[None]))
     b = float(np.logaddexp(np.logaddexp.reduce(shaped), np.logaddexp.reduce(wandered)))
     kinds: dict[Kind, float] = {kind: _sum(shaped[mixed.kind == kind]) for kind in SHARES}

@@ -1,4 +1,4 @@
-"""A recording judged by what parity shows, sensor by sensor.
+"""Judges a recording, sensor by sensor, by its parity residuals.
 
 Nothing detected: a parameter passes when a change of the size of its tolerance would have been detected with 95 %
 power; otherwise it is undecidable, because it could not have been seen. A change detected: the candidates are judged by
@@ -24,7 +24,7 @@ from estimator.results import Calibration
 
 RULE = "parity/2"
 PARAMETERS = ("scale", "bias", "axis")
-"""In the order judged; parity says nothing of the second-order term."""
+"""The parameters in the order in which they are judged; parity cannot see the second-order term."""
 
 NOT_KNOWN = dict.fromkeys(("deviation", "uncertainty", "expanded", "probability_out", "critical"))
 FAILED: Mapping[str, Any] = {**NOT_KNOWN, "verdict": FAIL}
@@ -69,13 +69,13 @@ class _ParityCase:
 
     @property
     def sight(self) -> Sight:
-        """What the recording shows of it."""
+        """Sight of this parameter in the recording."""
         sight: Sight = getattr(self.sensor, self.parameter)
         return sight
 
     @property
     def is_candidate(self) -> bool:
-        """Whether its change would explain what was detected."""
+        """Whether a change of this parameter would explain the detection."""
         return any(c.sensor == self.sensor.name and c.kind in (self.parameter, SEVERAL) for c in self.result.candidates)
 
 

@@ -1,4 +1,4 @@
-"""How the parameters of a unit type behave, learned from its own histories: empirical Bayes.
+"""The usual behaviour of a unit type's parameters, learned from its own histories: empirical Bayes.
 
 Each history of a parameter is of one kind at one strength of its walk (`fits`): nothing, a jump or a late drift at some
 time, a drift from the start, aging, temperature. Jumps and late drifts come as Poisson processes with a rate per year
@@ -49,23 +49,23 @@ FRAILTY = 0.5
 """κ: rates differ by more than their mean, as those of weak and sound parts do. The histories of one type, all about as
 long, hardly tell it."""
 ROUNDS = 60
-"""Of the expectation maximisation: the slowest moves by less than 1e-3 of itself then."""
+"""Rounds of expectation maximisation, after which the slowest number moves by less than 1e-3 of itself."""
 
 
 @dataclass(frozen=True, eq=False)
 class Prior:
-    """What is expected of a parameter before its own history is looked at."""
+    """The expected behaviour of a parameter, before its own history is looked at."""
 
     walk: Array
-    """(Q,) chance of each strength, of one in which nothing else happens."""
+    """(Q,) chance of each walk strength, for a parameter in which nothing else happens."""
     moving: Array
-    """(Q,) the same, of one that changes: what wanders need not drift."""
+    """(Q,) chance of each walk strength, for a parameter that changes: one that wanders need not drift."""
     rate: Array
-    """(P,) per year, of jumps and late drifts by size; 0 elsewhere."""
+    """(P,) rate per year of jumps and late drifts, by size; 0 elsewhere."""
     chance: Array
-    """(P,) per history, of drifts from the start and of aging; 0 elsewhere."""
+    """(P,) chance per history of drifts from the start and of aging; 0 elsewhere."""
     histories: int = 0
-    """That it was learned from; 0 for units in general."""
+    """Number of histories it was learned from; 0 for units in general."""
     tails: Array = field(default_factory=NORMAL.copy)
     """(4,) chance of each law of errors."""
 
@@ -111,7 +111,7 @@ class Prior:
 
 
 def general_prior() -> Prior:
-    """Of units in general."""
+    """The prior for units in general."""
     chance = np.concatenate([[0.0], CHANCE])
     walk = WALK / WALK.sum()
     return Prior(walk, walk, np.where(COMES, chance, 0.0), np.where(STARTS, chance, 0.0), tails=USUAL)
@@ -119,18 +119,18 @@ def general_prior() -> Prior:
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
-    """What one history of a parameter contributes to its type: enough to learn from, without its readings."""
+    """The contribution of one parameter history to its type: enough to learn from, without the readings."""
 
     span: float
     """Years."""
     log_evidence: Array
-    """(Q, P) of `Fits.log_evidence`."""
+    """(Q, P) log evidence by `Fits.log_evidence`."""
     log_tails: Array = field(default_factory=lambda: np.zeros(len(FREEDOMS)))
-    """(4,) of `tails.log_tails`; zero where it contributes nothing."""
+    """(4,) log likelihoods by `tails.log_tails`; zero where the history contributes nothing."""
 
 
 def learn(histories: Sequence[Evidence]) -> Prior:
-    """From all histories of one parameter of a type; of none the general prior."""
+    """Learns the prior from all histories of one parameter of a type; the general prior where there are none."""
     general = general_prior()
     if not histories:
         return general

@@ -1,4 +1,4 @@
-"""Who stands out of a population: units, production lots and stands, robustly.
+"""Robust detection of outliers in a population of units, production lots or stands.
 
 Rates of one parameter, r_i ± s_i, are drawn about a common centre with a spread τ of their own (random effects):
 r_i ~ N(μ, τ² + s_i²). μ is the median. τ comes from the median absolute deviation, which half of the rates may spoil
@@ -38,12 +38,12 @@ def spread(values: Array, sigmas: Array) -> tuple[float, float]:
 
 
 def standing(values: Array, sigmas: Array, centre: float, tau: float) -> Array:
-    """How far each of (n,) values is from the centre, in the spread that is expected of it; units as in `spread`."""
+    """Distance of each of (n,) values from the centre, in units of its expected spread; units as in `spread`."""
     return np.asarray((values - centre) / np.sqrt(tau**2 + sigmas**2 + 1e-300))
 
 
 def outliers(z: Sequence[float], level: float = 0.01, among: int = 0) -> tuple[bool, ...]:
-    """Which of n members are further out than the furthest of n is with probability ``level`` (Šidák).
+    """Marks the members that are further out than the furthest of n is with probability ``level`` (Šidák).
 
     ``z`` may be those alone that are furthest out of ``among`` members.
     """
@@ -52,7 +52,7 @@ def outliers(z: Sequence[float], level: float = 0.01, among: int = 0) -> tuple[b
 
 
 def group_standing(rates: Sequence[tuple[float, float]], groups: Sequence[str]) -> dict[str, float]:
-    """How far the mean rate of each group (a production lot) stands from the population.
+    """Distance of each group's (a production lot's) mean rate from the population, in sigmas.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Where a parameter may be now and how it may go on: draws from what its history and its type leave open.
+"""Draws of a parameter's present level and future course, given its history and its type.
 
 Every kind of change, its time, its size's scale and every strength of the walk is one hypothesis; its weight is prior
 (`pooled`) times likelihood (`fits`). Given one of them all is normal: first the size a, then the level at the last
@@ -19,7 +19,7 @@ from estimator.session import Array
 FAINT = 1e-3
 """Share of a way of taking the readings that is left out: it changes a chance of 5 % by a hundredth of that at most."""
 EACH = ("level", "rate", "aging", "constant", "walk", "kind", "slope")
-"""What every draw has."""
+"""The fields of `Draws` that hold one value, or vector, for each draw."""
 DRAWS = 1600
 """A chance of 5 % is right to about half a percent, and the same history gives the same answer always."""
 
@@ -136,7 +136,7 @@ def draw(
 
 
 def _drawn(fitted: Fits, all_of: Hypotheses, value: Array, rng: np.random.Generator) -> Draws:
-    """Of readings (n, k) taken in one way."""
+    """Draws for readings (n, k) taken in one way."""
     family = fitted.family
     last = np.where(family.kind == Kind.WARMTH, 0.0, family.columns[-1])
     picked = _picked(all_of.weight, rng)

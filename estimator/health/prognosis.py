@@ -94,18 +94,18 @@ class Track:
 
 @dataclass(frozen=True, eq=False)
 class Outlook:
-    """What one track says; SI a year, years."""
+    """The forecast of one track; SI a year, years."""
 
     level: float
-    """Along `direction`."""
+    """Level along `direction`."""
     level_sigma: float
     rate: float
-    """Of the drift in force: its mean over all that history and type leave open."""
+    """Rate of the drift in force: its mean over everything that the history and the type allow."""
     rate_sigma: float
     p_value: float
-    """Of any change at all: the chance of one as evident, at any time and of any kind, where nothing happens."""
+    """Chance of a change as evident, at any time and of any kind, where nothing happens."""
     changes: tuple[Change, ...]
-    """Found; sizes in tolerances, gaps counted in the track's sessions."""
+    """Changes that were found; sizes in tolerances, gaps counted in the track's sessions."""
     warmth: Warmth | None
     chance: Array
     """(h,) probability of having reached the tolerance by `AHEAD` after the track's last session."""
@@ -113,14 +113,15 @@ class Outlook:
     """Years after the last session by which one that is within its tolerance now has reached it as likely as not;
     infinite beyond the horizon."""
     reach_90: float
-    """Before it the tolerance is reached with 10 % probability, and with 20 % at most if what is there is a drift; with
-    10 % of a drift that was found."""
+    """Years before which the tolerance is reached with 10 % probability, and with at most 20 % if there is a drift;
+    with 10 % for a drift that was found.
+    """
     is_known: bool
-    """Whether the level is known well enough for the forecast to mean anything."""
+    """Whether the level is known well enough for a forecast."""
     direction: Array
     """(k,) unit vector that level and rate are along."""
     fan: Future
-    """At the dates that were asked for."""
+    """Forecast at the requested dates."""
 
     @property
     def steps(self) -> tuple[int, ...]:
@@ -142,13 +143,13 @@ class Prognosis:
     """(h,) probability that any known parameter has reached its tolerance by `AHEAD` after the latest session."""
 
     def chances(self, tracks: Sequence[Track]) -> Array:
-        """(B, h) of every one of the tracks that it was made of, 0 where its level is not known well enough."""
+        """(B, h) chances of every track of this prognosis; 0 where its level is not known well enough."""
         chances = _chances(tracks, self.outlooks)
         return np.where([[outlook.is_known] for outlook in self.outlooks], chances, 0.0)
 
 
 def evidence(track: Track) -> Evidence:
-    """What a track contributes to its type, whatever else is known of the type."""
+    """The contribution of a track to its type, independent of what else is known of the type."""
     readings, (dof, temperature) = _readings(track), _conditions(track)
     warmth = None
     if shows_temperature(temperature):
@@ -201,7 +202,7 @@ def direction(track: Track) -> Array:
 
 
 def _outlook(track: Track, prior: Prior, ahead: Array, number_and_level: tuple[int, float]) -> Outlook:
-    """Of the track with a number, at its level of detection."""
+    """The outlook of a track; ``number_and_level``: its number, which seeds the draws, and its level of detection."""
     number, level = number_and_level
     rng = np.random.default_rng(number)
     readings = replace(_readings(track), tails=prior.tails)

@@ -1,4 +1,4 @@
-"""How many independent looks a scan over neighbouring dates is worth.
+"""The number of independent looks that a scan over neighbouring dates is worth.
 
 Scores at neighbouring dates rest on mostly the same sessions, so that n of them are fewer chances to be misled than n.
 For standard normal vectors u_i of k components, each correlated with the next by ρ_i, the chance that any is long is
@@ -20,7 +20,7 @@ from estimator.session import Array
 from estimator.significance import critical_chi2
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(48)
-"""(48,) of r, dimensionless; right to 1e-4 of itself."""
+"""(48,) nodes and weights of the integral over r, dimensionless; right to a relative 1e-4."""
 ACROSS = 16
 """Nodes of q, which only bends the edge: right to 1e-3 from ρ = ½ on, to a twentieth where scores are independent."""
 REACH = 8.0
@@ -30,7 +30,7 @@ ALIKE = 1.0 - 1e-9
 
 
 def looks(correlation: Array, size: int, level: float) -> float:
-    """How many looks n scores of ``size`` components are worth, at a ``level`` over all of them.
+    """The number of looks that n scores of ``size`` components are worth, at a ``level`` over all of them.
 
     correlation : (n − 1,) ρ of each score with the next, dimensionless.
     """

@@ -1,4 +1,4 @@
-"""How blocks are seated: the scatter of a mounting on every stand, by restricted maximum likelihood.
+"""The scatter with which blocks are seated on every stand, by restricted maximum likelihood.
 
 What session i of unit u, on stand s, shows of a block's pose (of its scales) is
 
@@ -53,7 +53,7 @@ class SeatedUnits:
     value: Array
     """(u, n, k) rad or relative."""
     noise: Array
-    """(u, n, k, k) of each session alone, rad² or relative²; where there is none the unit matrix."""
+    """(u, n, k, k) noise covariance of each session alone, rad² or relative²; the unit matrix where there is none."""
     time: Array
     """(u, n) years."""
     unit: Array
@@ -105,7 +105,7 @@ class Weighted:
 
 @dataclass(frozen=True, eq=False)
 class Seating:
-    """Everything at given events."""
+    """The fit at given events."""
 
     parts: tuple[Weighted, ...]
     scatter: SeatingScatter
@@ -114,7 +114,7 @@ class Seating:
     value: Array
     """(e, k) δ, rad or relative."""
     covariance: Array
-    """(e, k, e, k) of δ, rad² or relative²."""
+    """(e, k, e, k) covariance of δ, rad² or relative²."""
 
 
 def seated(
@@ -238,7 +238,7 @@ def _precision(g: SeatedUnits, scatter: SeatingScatter) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class _SeatingSums:
-    """What a step needs of every variance: A and B/θ²."""
+    """The sums A and B/θ² that a step needs for every variance."""
 
     trace: Array
     square: Array
@@ -293,7 +293,7 @@ def _sums(seating: Seating) -> tuple[_SeatingSums, _SeatingSums]:
 
 
 def _taken(first: Array, second: Array, covariance: Array) -> Array:
-    """(u, n) what the events take from the traces of P, unit of P; both (u, n, k, e, k)."""
+    """(u, n) reductions of the traces of P by the events, unit of P; both (u, n, k, e, k)."""
     return np.asarray(np.einsum("uiaeb,ebfc,uiafc->ui", first, covariance, second, optimize=True))
 
 

@@ -1,4 +1,4 @@
-"""What one change can look like through time: every hypothesis that a deviation is held against.
+"""The shapes that a single change can take through time: every hypothesis that a deviation is tested against.
 
 Times t_0 < … < t_{n−1} of the sessions in years since the first, one column a hypothesis, per unit of its size:
 
@@ -43,7 +43,7 @@ BARELY = 1e-9
 
 
 class Kind(IntEnum):
-    """How a parameter changes."""
+    """Kind of change of a parameter."""
 
     NONE = 0
     JUMP = 1
@@ -53,17 +53,17 @@ class Kind(IntEnum):
     """A drift since the first session."""
     AGING = 4
     WALK = 5
-    """At no steady rate, away and back again."""
+    """Random wander, without a steady rate."""
     SETTLING = 6
     """Aging that comes to an end."""
     WARMTH = 7
-    """Not by itself, but with the temperature of the sessions."""
+    """No change of its own: the parameter follows the temperature of the sessions."""
 
 
 DRIFTS = (Kind.LATE, Kind.START, Kind.AGING)
-"""What goes on."""
+"""Kinds of change that continue."""
 STILL = (Kind.NONE, Kind.WARMTH)
-"""In which nothing has begun."""
+"""Kinds in which no change has begun."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +83,9 @@ class Shapes:
 
 
 def shapes(time: Array) -> Shapes:
-    """Of sessions at (n,) years since the first, increasing; at least two. All parameters of a unit share them."""
+    """The shapes for sessions at (n,) years since the first, increasing; at least two. All parameters of a unit share
+    them.
+    """
     return _shapes(time.tobytes())
 
 
@@ -105,7 +107,7 @@ def _with_ends(moments: bytes, warmth: bytes) -> Shapes:
 
 
 def courses(time: Array, warmth: Array) -> Shapes:
-    """The same with aging that comes to an end and with the temperature, for forecasts.
+    """All shapes, with aging that comes to an end and the temperature besides, for forecasts.
 
     Parameters
     ----------
@@ -140,5 +142,7 @@ def course(time: Array, age: Array | float) -> Array:
 
 
 def settled(time: Array, age: Array | float) -> Array:
-    """The same of aging that comes to an end."""
+    """Aging that comes to an end, at times since the first session, years, with a constant ``age``, years;
+    dimensionless.
+    """
     return np.asarray(-np.expm1(-time / age))

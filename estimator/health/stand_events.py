@@ -1,4 +1,4 @@
-"""What may have happened to a stand or a unit, each hypothesis weighed by χ²: which of them, and when.
+"""Events that may have befallen a stand or a unit, and when: each hypothesis is weighed by χ².
 
 Nothing; a stand turned at a date; a stand turned and was turned back (a fixture seated badly for a month); a unit moved
 by itself at a date, whatever it was measured on. An event adds a column D to the model of `seating`, and its δ lowers
@@ -76,12 +76,14 @@ class EventTest:
     looked: float
 
     def exceeds(self, level: float) -> bool:
-        """Whether chance alone reaches as much with less than a probability, everything looked at."""
+        """Whether chance alone reaches as large a χ² with less than this probability, all that was looked at
+        included.
+        """
         return self.chi2 > critical_chi2(level / self.looked, self.size, self.freedom)
 
     @property
     def p_value(self) -> float:
-        """Everything looked at."""
+        """Chance of as large a χ², all that was looked at included."""
         return family_wise(float(p_value(self.chi2, self.size, self.freedom)), self.looked)
 
     @property
@@ -160,7 +162,9 @@ def _of_cells(seating: Seating, v: Array) -> float:
 
 
 def _of_fixed(seating: Seating, sums: Array) -> float:
-    """The same of the ω²; sums (2, s) what each adds and is known by, per variance and per variance squared."""
+    """Half the variance that the ω² give a variance; sums (2, s) what each adds and is known by, per variance and per
+    variance squared.
+    """
     theta = seating.scatter.fixed
     return float(((theta * sums[0]) ** 2 / (theta**2 * sums[1] + STAND_PRIOR)).sum())
 

@@ -1,4 +1,4 @@
-"""When a stand was turned, and turned back: its most evident change among the pairs of its dates.
+"""Search for the dates at which a stand was turned, and turned back: its most evident change among pairs of dates.
 
     χ² = bᵀJ⁻¹b,    b = Σ Pz,  J = Σ P
 
@@ -28,14 +28,14 @@ from estimator.health.stand_events import FEWEST_UNITS, LEVEL, EventCandidate, S
 from estimator.session import Array
 
 MOST_DATES = 120
-"""Of one stand that are spread over its life: work grows with their square."""
+"""Most dates of one stand that are spread over its life: work grows with their square."""
 ROW = 40
 """Dates in a row of which all pairs are looked at, every second half of them anew: an excursion of twenty sessions is
 seen whole, and one of more leaves its middle in the spread dates of stands with a thousand sessions."""
 
 
 def of_stands(seating: Seating) -> list[EventCandidate]:
-    """Each stand's most evident change, steps and excursions; of stands that three units tell of."""
+    """Each stand's most evident changes, steps and excursions; only for stands that at least three units inform."""
     lives = [_life(seating, stand) for stand in range(len(seating.scatter.stand))]
     spread = [_tested_pairs(_from_each(seating, life, life.spread), seating) for life in lives]
     price = _Price(sum(pairs.steps for pairs in spread), sum(life.lengths for life in lives))
@@ -51,9 +51,9 @@ class _Life:
     part: Array
     """(s,) number of the session's part of the fleet."""
     row: Array
-    """(s,) of its unit within the part."""
+    """(s,) row of its unit within the part."""
     place: Array
-    """(s,) among its unit's sessions."""
+    """(s,) place among its unit's sessions."""
     time: Array
     """(s,) years."""
     dates: Array
@@ -61,18 +61,18 @@ class _Life:
 
     @property
     def spread(self) -> Array:
-        """(c,) dates evenly among them, years."""
+        """(c,) dates spread evenly among those of the stand, years."""
         last = len(self.dates) - 1
         return self.dates[np.unique(np.linspace(0, last, MOST_DATES).round().astype(int))] if last >= 0 else self.dates
 
     @property
     def lengths(self) -> float:
-        """What its excursions of one session would cost."""
+        """Number of looks that excursions of a single session would cost."""
         n = len(self.dates)
         return n * float((1 / np.arange(FEWEST_UNITS, n + 1)).sum())
 
     def between(self, start: Array, end: Array) -> Array:
-        """(p,) how many dates lie within, from (p,) years up to and without (p,) years."""
+        """(p,) number of dates from (p,) years up to and without (p,) years."""
         return np.searchsorted(self.dates, end) - np.searchsorted(self.dates, start)
 
     def around(self, event: StandEvent) -> Array:
@@ -85,21 +85,21 @@ class _Life:
 
 @dataclass(frozen=True)
 class _Price:
-    """Looks at all stands."""
+    """The cost of looking, over all stands."""
 
     steps: float
     lengths: float
-    """At excursions of one session."""
+    """Cost of the excursions, in looks for those of one session."""
 
     def of(self, life: _Life, pairs: "_Pairs") -> Array:
-        """(p,) of every pair; half of the level belongs to steps and half to excursions."""
+        """(p,) looks that every pair costs; half of the level belongs to steps and half to excursions."""
         once = np.where(pairs.lasting, self.steps, life.between(pairs.start, pairs.end) * self.lengths)
         return np.maximum(2 * once, 1.0)
 
 
 @dataclass(frozen=True, eq=False)
 class _Sums:
-    """What the sessions of a stand say from each of c dates on, and at the last of none."""
+    """Sums over a stand's sessions from each of c dates on; zero for the last date, which no session follows."""
 
     dates: Array
     """(c,) years, increasing; the last infinite where no session follows."""
@@ -115,7 +115,7 @@ class _Sums:
 
 @dataclass(frozen=True, eq=False)
 class _Pairs:
-    """Pairs of dates that enough units tell of."""
+    """Pairs of dates with enough units on either side."""
 
     start: Array
     """(p,) years."""
@@ -184,7 +184,7 @@ def _tested_pairs(sums: _Sums, seating: Seating) -> _Pairs:
 
 
 def _from_each(seating: Seating, life: _Life, dates: Array) -> _Sums:
-    """From given dates on, (c,) years."""
+    """Sums from each of the given dates on, (c,) years."""
     dates = np.append(dates, np.inf)
     c, k, e = len(dates), *seating.value.T.shape
     whole, pull, shared = np.zeros((c, k, c, k)), np.zeros((c, k)), np.zeros((c, k, e, k))
@@ -204,13 +204,13 @@ def _from_each(seating: Seating, life: _Life, dates: Array) -> _Sums:
 
 
 def _in_rows(seating: Seating, life: _Life) -> Iterator[_Sums]:
-    """From every date of some in a row on; none of these pairs lasts."""
+    """Sums from every date in overlapping rows of dates; none of these pairs lasts."""
     starts = range(0, max(len(life.dates) - ROW // 2, 1), ROW // 2)
     return (_row(seating, life, life.dates[start : start + ROW]) for start in starts)
 
 
 def _row(seating: Seating, life: _Life, dates: Array) -> _Sums:
-    """Between the dates (c,), years; the session at the last counts for nothing."""
+    """Sums between the dates (c,), years; the session at the last counts for nothing."""
     first, last = np.searchsorted(life.time, dates[[0, -1]])
     inside, (k, e) = slice(first, last), seating.value.T.shape
     w = last - first
@@ -249,7 +249,7 @@ def _alike(free: Array, steps: Array) -> Array:
 
 
 def _telling(after: Array, sessions: Array) -> Array:
-    """(c, c) how many units have sessions between two dates, and others; ``after`` (u, c) from each date on."""
+    """(c, c) number of units with sessions between two dates and others besides; ``after`` (u, c) from each date on."""
     between = after[:, :, None] - after[:, None, :]
     return np.asarray(((between > 0) & (between < sessions[:, None, None])).sum(axis=0))
 

@@ -42,7 +42,7 @@ SAME = 1e-6
 TRIED = 12
 """Stands, the most evident, whose best candidate is given a fit of its own."""
 MOST_EVENTS = 24
-"""Of a fleet that are distinguished; more are no single events."""
+"""Most events of a fleet that are told apart; more are no single events."""
 BUCKETS = 2.0
 """Units whose numbers of sessions are within this factor are worked on together."""
 
@@ -72,31 +72,31 @@ class StandShift:
     value: tuple[float, ...]
     """(k,) δ, rad or relative."""
     covariance: tuple[tuple[float, ...], ...]
-    """(k, k) of δ, rad² or relative²."""
+    """(k, k) covariance of δ, rad² or relative²."""
     units: int
-    """That have sessions with it and without."""
+    """Number of units that have sessions with the shift and without it."""
     agreeing: int
-    """Of them, that show its direction."""
+    """Number of those units that show the shift in its direction."""
     chi2: float
     p_value: float
-    """Everything considered that was looked at."""
+    """Chance of as evident a shift, all that was looked at included."""
 
 
 @dataclass(frozen=True)
 class StandState:
-    """What the units say of one stand."""
+    """The state of one stand, by the units measured on it."""
 
     stand: str
     seating: float
     """τ, one sigma of how a block is seated, per component, rad or relative."""
     shifts: tuple[StandShift, ...]
-    """In order of time."""
+    """Shifts in order of time."""
     suspected: StandShift | None
-    """Of a stand without a shift the most evident one; None where too few units tell."""
+    """The most evident change of a stand without a shift; None where too few units inform it."""
 
     @property
     def has_shifted(self) -> bool:
-        """Whether it is now elsewhere than it was."""
+        """Whether the stand is still displaced by a shift."""
         return any(shift.until is None for shift in self.shifts)
 
     @property
@@ -125,7 +125,7 @@ class _Taken:
 
 @dataclass(frozen=True, eq=False)
 class _Explained:
-    """What happened, and what might have."""
+    """The model with the events that were taken into it, and the candidates that were not."""
 
     seating: Seating
     taken: tuple[_Taken, ...]
@@ -149,7 +149,7 @@ def _explained(groups: Sequence[SeatedUnits], stand_of: Array) -> _Explained:
 
 
 def _candidates(seating: Seating) -> list[_Taken]:
-    """What is worth a fit of its own."""
+    """The candidates that deserve a fit of their own."""
     stands = sorted(of_stands(seating), key=lambda candidate: -candidate.gain)[:TRIED]
     unit = of_units(seating)
     return [_Taken(candidate.event, candidate.looked) for candidate in (*stands, *([] if unit is None else [unit]))]
@@ -161,7 +161,7 @@ def _with(seating: Seating, groups: Sequence[SeatedUnits], taken: Sequence[_Take
 
 
 def _pruned(seating: Seating, groups: Sequence[SeatedUnits], taken: list[_Taken]) -> tuple[Seating, tuple[_Taken, ...]]:
-    """Without events that are no longer evident, the least evident first."""
+    """Drops events that are no longer evident, the least evident first."""
     while taken:
         failing = [i for i, entry in enumerate(taken) if not _is_evident(seating, i, entry)]
         if not failing:
@@ -173,14 +173,14 @@ def _pruned(seating: Seating, groups: Sequence[SeatedUnits], taken: list[_Taken]
 
 
 def _is_evident(seating: Seating, e: int, candidate: _Taken) -> bool:
-    """Whether the e-th event of the model is beyond chance and, of a stand, the units' common testimony."""
+    """Whether the e-th event of the model is beyond chance and, for a stand, confirmed by its units."""
     test = event_test(seating, e, candidate.looked)
     return test.exceeds(LEVEL) and (candidate.event.stand < 0 or _witnesses(seating, e).confirm(test))
 
 
 @dataclass(frozen=True, eq=False)
 class _Witnesses:
-    """What each unit says of one event; of those that say anything.
+    """The evidence of each unit for one event, of the units that have any.
 
     Two events on some of the same sessions may differ by one terrible mounting, which then carries one of them: without
     a unit, those beside are what the other units make of them.
@@ -208,7 +208,7 @@ class _Witnesses:
         return np.asarray(np.einsum("a,uab,b->u", self.value, self.information, self.value))
 
     def confirm(self, test: EventTest) -> bool:
-        """Whether they are enough, of one mind, and none is the only one."""
+        """Whether the units are enough, agree, and do not all hang on a single one."""
         if self.agreeing.sum() < FEWEST_UNITS:
             return False
         votes = self.agreeing[self._squared_size > VOTING**2]
@@ -312,7 +312,7 @@ def _units(
 
 
 def _alone(covariance: Array) -> Array:
-    """(n, k, k) what each session is uncertain of by itself, from totals that hold the reference too.
+    """(n, k, k) noise covariance of each session alone, from totals that hold the reference too.
 
     The reference is taken to be as uncertain as the best of the others, half of its total. Without another session
     there is nothing to compare, and any value will do.

@@ -1,4 +1,4 @@
-"""How heavy the tails of errors are: Student's law of ν degrees of freedom with the stated standard deviation.
+"""Heaviness of the tails of errors: Student's law of ν degrees of freedom with the stated standard deviation.
 
 One bad mounting in fifty looks like a jump to whoever takes all errors to be normal. How heavy tails are is a matter of
 the unit type and its workshop, and is learned from all its histories (`pooled`). Of each history under each ν,

@@ -1,5 +1,5 @@
-"""What temperature alone is worth in a session, by the law that the unit's sessions before it follow; the session as it
-would have been at the temperature of its reference.
+"""The effect of temperature on a session's parameters, by the law that the unit's earlier sessions follow, and the
+session as it would have been at the temperature of its reference.
 
 The change y of a bias or scale since the reference, at sessions i measured at T_i:
 
@@ -43,12 +43,12 @@ Place = tuple[str, str]
 
 @dataclass(frozen=True)
 class TemperatureStep:
-    """What going from the reference's temperature to the session's is worth in one parameter."""
+    """The effect on one parameter of going from the reference's temperature to the session's."""
 
     worth: float
     """Relative for a scale factor, else SI."""
     sigma: float
-    """One sigma of it, with what scatters about the law; the same unit."""
+    """One sigma of the effect, with the scatter about the law; the same unit."""
     dof: float | None
     """Degrees of freedom of sigma; None where the sessions scatter by no more than their noise."""
     temperature: float
@@ -56,13 +56,13 @@ class TemperatureStep:
     reference_temperature: float
     """°C of the reference."""
     sessions: int
-    """That the law was learned from."""
+    """Number of sessions the law was learned from."""
     lowest: float | None = None
     """°C of the coldest of them; None of a law from before this was kept."""
     highest: float | None = None
     """°C of the warmest."""
     units: int = 0
-    """Of its type, that it was learned from too."""
+    """Number of units of its type that it was also learned from."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,7 +72,7 @@ class TemperatureCorrection(TemperatureStep):
     measured: float
     """Change from the reference at the session's temperature: relative for a scale factor, else SI."""
     corrected: float
-    """The same at the reference's temperature."""
+    """Change from the reference at the reference's temperature; the same unit."""
     expanded: float
     """U of the corrected change, the law's share in it."""
 
@@ -86,7 +86,7 @@ class Seen:
     """A session that a law is learned from."""
 
     years: float
-    """When it was measured, years from any moment on."""
+    """Time of measurement, years from an arbitrary origin."""
     celsius: float
     """°C, its mean temperature."""
     calibration: Calibration
@@ -94,16 +94,18 @@ class Seen:
 
 @dataclass(frozen=True, eq=False)
 class LawHistory:
-    """One parameter of one sensor over sessions at n temperatures."""
+    """Values of one sensor's parameter over sessions at n temperatures."""
 
     readings: Readings
-    """With the likeliest change through time acting, of any size."""
+    """The readings, with the likeliest change through time as a regressor of any size."""
     celsius: Array
-    """(n,) of the sessions."""
+    """(n,) °C of each session."""
 
 
 def can_tell(learned: Sequence[float], reference: float, now: float, enough: int = ENOUGH_TO_BEND) -> bool:
-    """Whether so many sessions, at °C, may tell what one at another temperature than its reference owes to it."""
+    """Whether sessions at these temperatures, °C, can determine the effect of a temperature other than the
+    reference's.
+    """
     if abs(now - reference) < NEAR or len(learned) < enough:
         return False
     return bool(np.std(learned) >= WARMED and min(abs(now - celsius) for celsius in learned) <= REACH)
@@ -116,7 +118,7 @@ def temperature_steps(
     tolerances: Mapping[Place, float],
     laws: Sequence[TypeLaw] = (),
 ) -> dict[Place, TemperatureStep]:
-    """What temperature is worth in every parameter whose law is found, by sensor and parameter.
+    """The effect of temperature on every parameter whose law is found, by sensor and parameter.
 
     Parameters
     ----------
@@ -146,7 +148,7 @@ def _step(
     between: tuple[float, float],
     level_and_law: tuple[float, TypeLaw | None],
 ) -> TemperatureStep | None:
-    """By the type's law where that leaves the parameter decidable, or where the sessions show a law themselves.
+    """Takes the type's law where it leaves the parameter decidable, else the sessions' own law where they show one.
 
     ``place``: a sensor of the reference, a parameter and T; ``level_and_law``: the chance of a law where
     none is, and the type's."""
@@ -164,7 +166,7 @@ def _step(
 
 
 def _shows(history: LawHistory, level: float) -> bool:
-    """Whether the sessions follow the temperature as chance rarely does."""
+    """Whether the sessions follow the temperature more closely than chance allows."""
     celsius = history.celsius
     is_spread = len(celsius) >= ENOUGH_TO_BEND and celsius.std() >= WARMED
     return bool(is_spread and chance_of(history.readings, celsius) < level)
@@ -258,7 +260,9 @@ def at_reference(calibration: Calibration, reference: Calibration, steps: Steps)
 
 
 def _unit(ones: Mapping[str, float | None], name: str, parameter: str) -> float:
-    """What a step is multiplied by to become a parameter: the reference's scale, whose changes are relative to it."""
+    """Factor that turns a step into a change of the parameter: the reference's scale, as scale steps are relative to
+    it.
+    """
     return (ones.get(name) or 0.0) if parameter == "scale" else 1.0
 
 
@@ -272,7 +276,7 @@ def _moved(sensor: SensorCalibration, ones: Mapping[str, float | None], steps: S
 
 
 def _freed(estimate: Estimate, step: TemperatureStep | None, unit: float) -> Estimate:
-    """An estimate without what temperature is worth in it; ``unit``: of the estimate, in one unit of the step."""
+    """The estimate without the effect of temperature; ``unit``: size of one unit of the step, in the estimate's own."""
     if step is None or estimate.value is None or estimate.sigma is None:
         return estimate
     sigma = abs(step.sigma * unit)
@@ -285,7 +289,7 @@ def _freed(estimate: Estimate, step: TemperatureStep | None, unit: float) -> Est
 def corrections(
     sessions: tuple[Calibration, Calibration], reference: Calibration, steps: Steps, k: float
 ) -> dict[Place, TemperatureCorrection]:
-    """What was corrected of a session, by sensor and parameter.
+    """The corrections of a session, by sensor and parameter.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A law over temperature by a unit's sessions and by what the laws of its type are alike in.
+"""A temperature law from a unit's own sessions and from the laws of other sensors of its type.
 
 Of a sensor's bias or scale, f(T) = b·(T − T₀) + c·(T − T₀)² with (b, c) ~ N(μ, diag s²) over the sensors of a type, and
 the scatter τ about it with the chances that the type gives it: empirical Bayes, else as `temperature_law`. With the
@@ -33,10 +33,10 @@ Scattered = tuple[Array, Array, Array]
 
 @dataclass(frozen=True)
 class TypeLaw:
-    """What the laws of a type's sensors are alike in, of one parameter."""
+    """The distribution of the temperature laws of a type's sensors, for one parameter."""
 
     kind: str
-    """Of sensor."""
+    """Kind of sensor."""
     parameter: str
     """`scale` or `bias`."""
     tolerance: float
@@ -50,13 +50,13 @@ class TypeLaw:
     scatter: tuple[float, ...]
     """Chance of every τ of `SCATTERS`: of none, and of 24 from 0.01 T to 3 T in equal ratios."""
     sensors: int
-    """That it was learned from."""
+    """Number of sensors it was learned from."""
     units: int
-    """The same."""
+    """Number of units it was learned from."""
 
     @property
     def usual_scatter(self) -> float:
-        """T, that half of the sensors scatter by at most."""
+        """Scatter that half of the sensors do not exceed, T."""
         return float(SCATTERS[np.searchsorted(np.cumsum(self.scatter), 0.5)])
 
 
@@ -103,7 +103,7 @@ def _inverted(information: Array) -> tuple[Array, Array]:
 
 
 def chances(log_likelihood: Array, prior: Array) -> Array:
-    """(..., K) of every τ, by log likelihoods (..., K) and the chances before (K,)."""
+    """(..., K) posterior chances of every τ, by log likelihoods (..., K) and prior chances (K,)."""
     share = prior * np.exp(log_likelihood - log_likelihood.max(axis=-1, keepdims=True))
     return np.asarray(share / share.sum(axis=-1, keepdims=True))
 

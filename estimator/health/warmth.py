@@ -1,4 +1,4 @@
-"""How a parameter follows the temperature of its sessions: a line or a parabola over the sessions' temperatures.
+"""The dependence of a parameter on the temperature of its sessions: a line or a parabola.
 
 b·(T − T̄), or b·(T − T̄) + c·(T − T̄)², fitted at the walk q that makes the law and the readings together most likely.
 A parabola is taken where c explains what the line leaves, as chance rarely does (χ² of as many numbers as c has). A law
@@ -21,7 +21,7 @@ laboratory was kept at its set point."""
 ENOUGH = 5
 """Sessions with a temperature, at least: level, coefficient and two numbers that speak against it."""
 ENOUGH_TO_BEND = 6
-"""The same of a parabola, which has a number more."""
+"""Sessions with a temperature, at least, for a parabola, which has a number more."""
 BENT = 1 / 3
 """Part of the level at which a parabola is taken in place of a line: both together are found by chance as rarely as is
 said."""
@@ -31,14 +31,14 @@ FLAT = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Warmth:
-    """How a parameter follows the temperature of the session."""
+    """The dependence of a parameter on the temperature of the session."""
 
     mean: float
     """°C of the sessions, T̄."""
     size: Array
     """(q, k) b, T per °C, and c of a parabola, T per °C²."""
     covariance: Array
-    """(k, q, q) of each component's, T per °C and T per °C², squared."""
+    """(k, q, q) covariance of each component's coefficients, T per °C and T per °C², squared."""
     p_value: float
     is_found: bool
 
@@ -49,12 +49,12 @@ class Warmth:
 
     @property
     def sigma(self) -> Array:
-        """(k,) of it."""
+        """(k,) one sigma of the coefficient, T per °C."""
         return np.sqrt(self.covariance[:, 0, 0])
 
     @property
     def is_bent(self) -> bool:
-        """Whether it is a parabola."""
+        """Whether the law is a parabola."""
         return len(self.size) > 1
 
     def between(self, start: float, stop: float) -> tuple[Array, Array]:
@@ -70,7 +70,7 @@ class Warmth:
 
 
 def shows_temperature(temperature: Array) -> bool:
-    """Whether sessions at so many °C (n,), NaN where it is not known, can tell of a coefficient."""
+    """Whether sessions at these temperatures (n,), °C, NaN where unknown, can determine a coefficient."""
     known = np.isfinite(temperature)
     return bool(known.sum() >= ENOUGH and temperature[known].std() >= WARMED)
 
@@ -82,7 +82,7 @@ def centred(temperature: Array) -> Array:
 
 
 def with_temperature(readings: Readings, temperature: Array, warmth: Warmth) -> Readings:
-    """With the law acting, of any size; the level that is forecast is that at the mean temperature."""
+    """The readings with the law as a regressor of any size; the forecast level is that at the mean temperature."""
     columns = _columns(temperature)[:, : len(warmth.size)]
     base = np.concatenate([readings.base, columns], axis=1)
     return replace(readings, base=base, now=np.append(readings.now, np.zeros(columns.shape[1])))
@@ -128,11 +128,11 @@ class _Fitted:
     explained: float
     """χ² of the columns against none of them."""
     log_likelihood: float
-    """With them, up to a constant."""
+    """Log likelihood with the columns, up to a constant."""
 
 
 def _fitted(readings: Readings, columns: Array) -> _Fitted:
-    """Of columns (n, q), any unit."""
+    """Fits columns (n, q), of any unit."""
     found = fits(readings, together(columns))
     information = np.swapaxes(found.shapes, -1, -2) @ found.shapes
     covariance = np.linalg.pinv(information, hermitian=True)
@@ -168,7 +168,7 @@ def _columns(temperature: Array) -> Array:
 
 
 def shown_columns(temperature: Array) -> Array:
-    """(n, q) of `_columns` that sessions at so many °C (n,) show: both where they can bend, else the line."""
+    """(n, q) those of `_columns` that sessions at (n,) °C determine: both where they can bend, else the line."""
     return _columns(temperature)[:, : 2 if _can_bend(temperature) else 1]
 
 

@@ -1,4 +1,4 @@
-"""What each sensor did by itself, averaged over who else may have moved.
+"""Each sensor's own change, averaged over the sets of other sensors that may have moved.
 
 A sensor that moved and takes part in the common change x drags it, and its own residual shows only a part 1 − h of what
 it did, h its leverage. Taking it out once a test finds it does not help the one that the test just misses: sensors that
@@ -35,7 +35,7 @@ from estimator.health.moved import FEWEST_AGREEING, fits, is_majority
 from estimator.session import Array
 
 ODDS = 0.1
-"""That a sensor changed between two sessions by more than they see: one in ten."""
+"""Odds that a sensor changed between two sessions by more than they can see: one in ten."""
 SIGMAS = 10.0
 """κ in standard errors where no tolerance says what matters; a drift that is wanted found is of that order."""
 LEAST = 1e-4
@@ -49,9 +49,9 @@ class Sets:
     """Changes, with the scatter that x is taken with, and what a free sensor costs."""
 
     changes: Changes
-    """With the scatter that a majority agrees within."""
+    """Changes, with the scatter within which a majority agrees."""
     weighing: Changes
-    """With the scatter that x is taken with."""
+    """Changes, with the scatter that x is taken with."""
     reach: float
     """κ, rad or relative; 0 where no tolerance says it."""
 
@@ -76,11 +76,11 @@ class Tried:
     """(n,) number of the sensor, rising."""
     moved: list[Sensors]
     inside: list[Sensors]
-    """Whom x rests on."""
+    """The sensors that x rests on."""
 
 
 def residuals(sets: Sets, excluded: Iterable[int]) -> dict[str, Deviation]:
-    """By sensor; ``excluded`` the sensors that tests found to have moved."""
+    """The residual of each sensor, by name; ``excluded``: the sensors that the tests found to have moved."""
     tried, changes = _tried(sets, frozenset(excluded)), sets.changes
     likely = _weights(sets, tried)
     vectors, current, origin = _residuals_of(sets, tried)
@@ -128,14 +128,15 @@ def _near(sets: Sets, j: int, excluded: Sensors) -> Iterator[Sensors]:
 
 
 def _inside(sets: Sets, j: int, moved: Sensors) -> Sensors:
-    """Whom x rests on; without the sensor itself unless the others are too few."""
+    """The sensors that x rests on; without the sensor itself unless the others are too few."""
     others = sets.everyone() - moved - {j}
     return others if len(others) >= FEWEST_AGREEING[sets.changes.rows] else others | {j}
 
 
 def _residuals_of(sets: Sets, tried: Tried) -> tuple[Array, Array, Array]:
-    """What x leaves of the sensor of every pair: (n, r), and the covariances (n, r, r) of both sessions; rad or
-    relative. What the others do on their own is a part of its uncertainty, what it does itself is not."""
+    """The residual (n, r) of the sensor of every pair beside x, and its covariances (n, r, r) from both sessions; rad
+    or relative. The wander of the other sensors is a part of its uncertainty, the sensor's own is not.
+    """
     changes, every = sets.changes, list(dict.fromkeys(tried.inside))
     fitted = fits(sets.weighing, [sorted(members) for members in every])
     numbers, rows = np.arange(len(tried.judged)), changes.rows

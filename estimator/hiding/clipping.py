@@ -35,7 +35,7 @@ class Range:
 
     @cached_property
     def input(self) -> Array:
-        """(R,) what the sensor reads, m/s² (rad/s) at the input, its bias included."""
+        """(R,) readings of the sensor, m/s² (rad/s) at the input, its bias included."""
         baseline = self.seen.baseline
         reading = measured(baseline.session)[0][:, self.sensor] / baseline.parameters.scale[self.sensor]
         return np.asarray(reading)
@@ -47,7 +47,7 @@ class Range:
 
     @cached_property
     def size(self) -> Array:
-        """(R,) how far out each reading lies towards it, m/s² (rad/s)."""
+        """(R,) readings counted towards the end of the range, m/s² (rad/s)."""
         return self.sign * self.input
 
     @property
@@ -125,7 +125,7 @@ def clipped(
 
 
 def too_strong(cause: Cause, least: float) -> TooWeakError:
-    """Why nothing as weak can be hidden."""
+    """The error that nothing as weak can be hidden, with the reason."""
     return TooWeakError(
         f"{cause.identifier} is {least:.4g} standard errors or more here: at its limit a sensor reads the same in "
         "two positions at least, and the largest inputs lie that far apart",

@@ -1,4 +1,4 @@
-"""What is hidden, why it cannot be, and the amplitude at which something is as strong as asked."""
+"""The cause that was hidden, the reasons why one cannot be, and the amplitude that reaches a strength."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ class TooWeakError(UnhideableError):
 
 @dataclass(frozen=True)
 class HiddenCause:
-    """What was hidden."""
+    """A cause hidden in a session."""
 
     cause: str
     sensors: tuple[int, ...] = ()
@@ -39,7 +39,7 @@ class HiddenCause:
     amplitude: tuple[float, ...] = ()
     """SI, as `units` of the cause; empty for an error of the record."""
     nonlinear: tuple[float, ...] = ()
-    """As `nonlinear_units` of the cause."""
+    """Nonlinear parameters, as `nonlinear_units` of the cause."""
     strength: float | None = None
     """Standard errors; None for an error of the record, which is there or not."""
 

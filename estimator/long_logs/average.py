@@ -41,7 +41,9 @@ class LongLog:
     parts: Callable[[], Iterator[CalibrationSession]]
     """All its rows, in order, some at a time, each part as a session; anew at every call."""
     labels: Callable[[], Iterator[Array]] | None
-    """(r, k) what labels the rows of each part: position, or the settings of a stand; None where nothing does."""
+    """Yields the (r, k) labels of the rows of each part: position, or the settings of a stand; None where rows have no
+    labels.
+    """
 
 
 def labelled_rests(log: LongLog, *, positions: bool) -> Intervals:
@@ -66,7 +68,7 @@ def labelled_rests(log: LongLog, *, positions: bool) -> Intervals:
 
 
 def too_many(count: int) -> str:
-    """What is wrong with labels that change all the time."""
+    """The fault of labels that change all the time, as a message."""
     return say(
         "changes {count} times or more; a log of {most_rests} positions can be averaged, so split it",
         count=count,
@@ -136,7 +138,7 @@ def _tallied(log: LongLog, choices: Sequence[Intervals]) -> list[RowTally]:
 
 
 def _moving(log: LongLog, tallies: Sequence[RowTally]) -> list[Mask]:
-    """Of every choice: in which rests the block moves; another pass, only where one may."""
+    """(n,) bool for every choice: rests in which the block moves. Makes another pass, only where one may."""
     moves = [np.zeros(len(tally.rests), dtype=bool) for tally in tallies]
     doubtful = [k for k, tally in enumerate(tallies) if tally.may_move()]
     if doubtful:
@@ -162,7 +164,7 @@ def _jitters(log: LongLog, choices: Sequence[Intervals]) -> list[Array]:
 
 
 def _chosen(log: LongLog, residual: Callable[[CalibrationSession], float]) -> RowTally:
-    """Of the rests under the threshold that calibrates best, as `estimator.static.best`."""
+    """Sums over the rests under the threshold that calibrates best, as `estimator.static.best`."""
     seen = _quietness(log)
     tried: dict[tuple[int, ...], tuple[float, RowTally]] = {}
     for tally in _calm(log, [still(seen.quiet, threshold, seen.rate) for threshold in THRESHOLDS]):
@@ -189,7 +191,7 @@ def _calm(log: LongLog, choices: Sequence[Intervals]) -> list[RowTally]:
 
 @dataclass(frozen=True, eq=False)
 class _SeenRows:
-    """What is to be known of a log before its rests are looked for."""
+    """Facts about a log that are needed before its rests are looked for."""
 
     quiet: Quietness
     rate: float

@@ -30,9 +30,9 @@ from estimator.static import (
 )
 
 SET = ("flipped", "beta", "directions", "position")
-"""What is set rather than read: taken from the first sample of a rest."""
+"""Columns that are set rather than read: taken from the first sample of a rest."""
 AVERAGED = ("time", "temperature")
-"""What is averaged beside the readings."""
+"""Columns that are averaged beside the readings."""
 
 
 class RowTally:
@@ -127,7 +127,7 @@ class RowTally:
         self._squares[i] += np.einsum("jr,jr->j", away[:m], away[:m])
 
     def at(self, chosen: NDArray[np.bool_]) -> "RowTally":
-        """Of those of the rests that are ``chosen`` (n,)."""
+        """The tally of the rests ``chosen`` (n,)."""
         other = RowTally(self.head, self.rests.at(chosen))
         for name in ("_first", "_sums", "_squares", "_ends"):
             setattr(other, name, getattr(self, name)[chosen])
@@ -168,7 +168,9 @@ class RowTally:
         return any((drift[:, i] > far_turn(sensor)).any() for i, sensor in self._accelerometers())
 
     def moving(self, jitter: Array) -> NDArray[np.bool_]:
-        """(n,) as `estimator.static.moving`; ``jitter`` (n, m) sums of the squared changes, reading units squared."""
+        """(n,) rests in which the block moves, as `estimator.static.moving`; ``jitter`` (n, m) sums of the squared
+        changes, reading units squared.
+        """
         moves = np.zeros(len(self.rests), dtype=bool)
         noise = jitter / (2 * self.rests.samples * (self.rests.samples // PIECES))[:, None]
         drift = self.drift()
@@ -225,7 +227,7 @@ class RowTally:
         return errors_of_kinds(self.head, self._errors_of_kind, response)
 
     def _errors_of_kind(self, channels: list[int], response: Array | None) -> MeanErrors:
-        """Of the means of some channels, as `estimator.static.mean_errors`."""
+        """Errors of the means of some channels, as `estimator.static.mean_errors`."""
         samples = self.rests.samples
         if samples.max() < 2:
             return MeanErrors(np.full((len(samples), len(channels)), np.nan))

@@ -93,7 +93,7 @@ def square(sight: Sight, size: int) -> Array:
 
 
 def covariance_of(sensor: SensorParity, known: SensorCalibration) -> Array:
-    """(4, 4) of one sensor's scale (reading units per m/s²), bias (m/s²) and axis (rad), each by itself."""
+    """(4, 4) covariance of one sensor's scale (reading units per m/s²), bias (m/s²) and axis (rad), each by itself."""
     scale = known.scale.value or 1.0
     return np.asarray(block_diag(scale**2 * square(sensor.scale, 1), square(sensor.bias, 1), square(sensor.axis, 2)))
 

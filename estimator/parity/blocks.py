@@ -1,4 +1,4 @@
-"""Which blocks of a recording are used, and how they are grouped.
+"""Chooses the blocks of a recording that are used, and groups them.
 
 Left out: blocks in which a channel ran into the end of its range, and blocks in motion where motion spoils parity
 (sensors that do not sit in one point feel rotation differently, and none of the model's terms says so). Whether it does
@@ -176,7 +176,7 @@ of the tail of noise fewer stand there than next to it."""
 PEAK = 8.0
 """Root mean square changes of what a sensor feels from sample to sample, beyond which vibration hardly takes it."""
 REACHED = 0.8
-"""Of the end of a range, which vibration must take a channel to for it to be cut off there."""
+"""Part of the way to the end of a range that vibration must drive a channel for it to be cut off there."""
 OFTEN = 5
 """Blocks in which a channel at fault runs into the end."""
 RARE = 0.05
@@ -223,7 +223,7 @@ def grouped(blocks: Blocks, still: Mask) -> NDArray[np.intp]:
 
 
 def too_short(total: int, ledger: Ledger) -> str:
-    """What is missing."""
+    """States the length that is missing, as a message."""
     if ledger.averaged:
         parts = {"total": few(total, "row"), "fewest_groups": FEWEST_GROUPS}
         return say("{total} to know their noise; give {fewest_groups} or more", **parts)
@@ -236,7 +236,7 @@ def too_short(total: int, ledger: Ledger) -> str:
 
 
 def too_saturated(saturated: tuple[str, ...], total: int, clean: int) -> str:
-    """Which channels."""
+    """Names the saturated channels, as a message."""
     listed = joined(", ", saturated)
     return say(
         "{listed} was at the end of the range in {total} of {total2} blocks; clipped readings cannot be judged: "
@@ -248,7 +248,7 @@ def too_saturated(saturated: tuple[str, ...], total: int, clean: int) -> str:
 
 
 def never_still(used: int, total: int) -> str:
-    """Nothing at rest."""
+    """States that nothing in the recording is at rest, as a message."""
     return (
         say(
             "only {used} of {total} blocks is at rest, {fewest_groups} are needed; keep the block still for longer, "

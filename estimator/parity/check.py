@@ -84,7 +84,7 @@ class ParityAccumulator:
         self.ledger.add(readings[known] / self._period)
 
     def result(self, *, motion: str = AUTO, false_alarm: float = FALSE_ALARM) -> ParityResult:
-        """What the recording so far says; ScheduleError where it cannot say anything. More may be added after it.
+        """Judges the recording so far; ScheduleError where it cannot be judged. More may be added afterwards.
 
         Parameters
         ----------
@@ -109,7 +109,7 @@ class ParityAccumulator:
         return replace(self._with_course(self._of_all(top)), faults=faults, before=before, after=after)
 
     def _of_all(self, top: ParityResult) -> ParityResult:
-        """With the sensors that took no part, of which nothing is seen."""
+        """Adds the sensors that took no part, about which nothing is known."""
         seen = {sensor.name: sensor for sensor in top.sensors}
         kept = np.array([name in seen for name in self.reference.names])
         course, sigma = np.full((len(top.course), len(kept)), np.nan), np.full(len(kept), np.nan)
@@ -148,7 +148,7 @@ class ParityAccumulator:
             return None
 
     def _compared(self, ledger: Ledger, motion: str, false_alarm: float) -> ParityResult:
-        """Whether a parameter has changed since the calibration."""
+        """Tests whether a parameter has changed since the calibration."""
         selection = select(ledger, motion, self._norm, self._rate)
         allowed = nuisance_of(
             selection.blocks, selection.rest, ledger.reference, self._norm, self._rate, arms=motion != ANY
@@ -158,7 +158,7 @@ class ParityAccumulator:
         return self._judged(ledger, selection, change, ParityEvidence(change), still, false_alarm)
 
     def _with_course(self, result: ParityResult) -> ParityResult:
-        """With the fine course of every sensor over the whole recording, for people to look at."""
+        """Adds the fine course of every sensor over the whole recording, for people to look at."""
         blocks, start, span = coarse(self.ledger.blocks())
         P = self.reference.parity @ self.reference.parity.T
         second = self.ledger.length / (self._rate or self.ledger.length)

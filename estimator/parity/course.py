@@ -34,7 +34,7 @@ DRIFT = (1, 2, 3)
 OWN = 3.0
 """Times, in sigma, that one sensor may be noisier than the others before it is suspected."""
 FAINT = 0.25
-"""Of a block's noise, in variance; as much of longer memory any sensor may have."""
+"""Variance of longer memory that any sensor may have, as a part of a block's noise."""
 ACTIVE = 1 / 3
 """Part of the blocks in which the vector changes most."""
 BESIDE = 7
@@ -61,9 +61,11 @@ class ParityCourse:
     p: Array
     """(T, d) parity without what stated positions feel, whitened."""
     halves: Array
-    """(T, d) the same of half the difference of the halves."""
+    """(T, d) half the difference of the parity of the block's halves, whitened likewise."""
     signals: Array
-    """(T, K) what motion and time do, and ``sizes`` (K, d, d), the covariance of its size in whitened parity."""
+    """(T, K) signals of motion and time that move parity; ``sizes`` (K, d, d) is the covariance of their size in
+    whitened parity.
+    """
     sizes: Array
     norm: float
     """g, m/s²; for gyros the root mean square rate, rad/s."""
@@ -77,7 +79,7 @@ class ParityCourse:
 
     @cached_property
     def felt(self) -> Array:
-        """(T, m) what the others say that each sensor feels, m/s² (rad/s)."""
+        """(T, m) input of each sensor as the others predict it, m/s² (rad/s)."""
         return self.reference.others(self.blocks.mean)
 
     def along(self, sensor: int) -> tuple[Array, Array, float]:
@@ -94,7 +96,7 @@ class ParityCourse:
         return np.asarray((self.signals * size) @ self.signals.T + (load * own) @ load.T)
 
     def vector(self, sensor: int) -> Array:
-        """(T, 3) what the others say of the vector, m/s² (rad/s): a fault of the sensor does not bend it."""
+        """(T, 3) vector by the other sensors, m/s² (rad/s): a fault of the sensor does not bend it."""
         a = self.blocks.mean.copy()
         a[:, sensor] = self.felt[:, sensor]
         return self.reference.vector(a)
@@ -109,14 +111,14 @@ class ParityCourse:
         return np.hstack(signals), np.array(sizes)
 
     def activity(self, sensor: int) -> Array:
-        """(T,) how much the vector changes about a block, m/s² (rad/s)."""
+        """(T,) change of the vector about a block, m/s² (rad/s)."""
         n = self.vector(sensor)
         around = np.linalg.norm(np.diff(np.pad(n, ((1, 1), (0, 0)), mode="edge"), axis=0), axis=1)
         return np.asarray(maximum_filter1d(np.maximum(around[1:], around[:-1]), 3))
 
     @cached_property
     def plain_variance(self) -> Array:
-        """(T,) of an element of p in a block that moves as it does, whitened."""
+        """(T,) variance of an element of p in a block that moves as it does, whitened."""
         variance = block_variance(self.halves)
         activity = np.median([self.activity(k) for k in range(len(self.directions))], axis=0)
         return np.asarray(variance + stirring(self.p, variance, activity) * activity**2)
@@ -159,7 +161,7 @@ def stirred(beside: Array, variance: Array, activity: Array, most: float) -> flo
 
 
 def course_of(ledger: Ledger, norm: float | None, rate: float) -> ParityCourse | None:
-    """Of a recording; None where too little of it can be used.
+    """The course of a recording; None where too little of it can be used.
 
     Parameters
     ----------

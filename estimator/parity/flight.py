@@ -26,15 +26,15 @@ SMOOTH = 2.0
 
 @dataclass(frozen=True)
 class Manoeuvre:
-    """What is flown, and how long."""
+    """A manoeuvre and its duration."""
 
     seconds: float
     roll: float = 0.0
-    """Turned through in all, rad; a bank angle in coordinated flight."""
+    """Angle turned through in all, rad; a bank angle in coordinated flight."""
     pitch: float = 0.0
     """rad"""
     load: float = 1.0
-    """Along the lift, in g."""
+    """Load along the lift, in g."""
     side: float = 0.0
     """Sideways load, in g."""
     slow_roll: bool = False
@@ -70,7 +70,7 @@ class Weather:
     noise: float = 1e-3
     """White, each sensor its own, m/s² a sample."""
     wander: float = 0.0
-    """Of each sensor's zero, first-order Gauss–Markov, m/s²."""
+    """Wander of each sensor's zero, first-order Gauss–Markov, m/s²."""
     wander_time: float = 100.0
     """s"""
     vibration: float = 0.5

@@ -29,7 +29,7 @@ ELEMENTS = {BIAS: [1], SCALE: [0], AXIS: [3, 4], SEVERAL: [1, 0, 3, 4]}
 WRONG_SENSOR = 0.01
 """Chance that the true sensor is passed over; the level of the detection, once more."""
 POWER = 0.95
-"""With which a change of the stated size is found; what is passed must have been found 19 times in 20."""
+"""Power with which a change of the stated size is found: a parameter passes if it would be found 19 times in 20."""
 UNSEEN = 1e-6
 """A signature of less than this share of a plain one leaves no trace."""
 
@@ -71,16 +71,18 @@ class ParityEvidence:
         self._single = [h for h in self.all if h.kind != SEVERAL]
 
     def share(self, part: Array) -> float:
-        """Of the covariance, how much a part of it (q, q), (m/s²)² ((rad/s)²), makes up on average, 0 to 1."""
+        """Average share of a part of the covariance (q, q), (m/s²)² ((rad/s)²), in the whole, 0 to 1."""
         return float(np.trace(cho_solve((self._root, True), part))) / len(part)
 
     @property
     def dof(self) -> float:
-        """Of the noise; larger where the reference's error, which is known, is most of the uncertainty."""
+        """Degrees of freedom of the noise; larger where the reference's error, which is known, is most of the
+        uncertainty.
+        """
         return self.change.dof / max(self.own_noise, 1e-3)
 
     def _tried(self, sensor: int, kind: str, whitened: Array) -> ParityHypothesis:
-        """Its ratio, and how improbable that is by chance; whitened (q, k), standard errors per unit of the change."""
+        """The hypothesis with its ratio and p-value; whitened (q, k), standard errors per unit of the change."""
         U, sizes, _ = np.linalg.svd(whitened, full_matrices=False)
         basis = U[:, sizes > UNSEEN * max(sizes[0], np.finfo(float).tiny)]
         ratio = float(((basis.T @ self.seen) ** 2).sum())
@@ -108,7 +110,7 @@ class ParityEvidence:
         return variance / (2 * mean), 2 * mean**2 / variance
 
     def detected(self, false_alarm: float) -> bool:
-        """Whether anything changed."""
+        """Whether any change is detected."""
         best = min(h.p_value for h in self.all) * len(self.all)
         return bool(min(self.p_value(self.chi2, len(self.seen)), best) < false_alarm / 2)
 
@@ -143,7 +145,7 @@ class ParityEvidence:
         )
 
     def sensor(self, index: int, false_alarm: float, isolated: list[ParityHypothesis]) -> SensorParity:
-        """What the recording shows of one sensor, and could have shown."""
+        """Changes of one sensor that the recording shows, and those that it could have shown."""
         reference = self.change.reference
         hypotheses = {h.kind: h for h in self.all if h.sensor == index}
         bias, scale, axis = (self.sight(hypotheses[kind], false_alarm, isolated) for kind in (BIAS, SCALE, AXIS))
@@ -185,7 +187,7 @@ class ParityEvidence:
         return float(np.linalg.svd(combined[0].whitened, compute_uv=False)[0])
 
     def rivals(self, h: ParityHypothesis, false_alarm: float) -> Rivals:
-        """What a change of the kind of ``h`` must be distinguished from."""
+        """The hypotheses that a change of the kind of ``h`` must be told from."""
         bases = np.zeros((len(self.all), len(self.seen), 4))
         for basis, tried in zip(bases, self.all, strict=True):
             basis[:, : tried.basis.shape[1]] = tried.basis

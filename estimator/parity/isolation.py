@@ -1,4 +1,4 @@
-"""From what size on a change of one sensor is attributed to it, in 95 of 100 recordings.
+"""The size from which a change of one sensor is attributed to it, in 95 of 100 recordings.
 
 A change of size μ standard errors, whose signature is the unit vector s, is lost in three ways: it is not detected; a
 hypothesis of another sensor comes within Δ of the best; the best leaves more than noise, by chance. The ratio of a
@@ -20,12 +20,12 @@ SIZES = np.geomspace(1.0, 500.0, 256)
 STRIDE = 16
 """Sizes between those that are looked at first: what is lost falls with the size, so one stretch decides."""
 DIRECTIONS = 8
-"""Of a turn, about which its size is looked at: the worst of eight is within 2 % of the worst."""
+"""Directions of a turn in which its size is tested: the worst of eight is within 2 % of the true worst."""
 
 
 @dataclass(frozen=True, eq=False)
 class Rivals:
-    """All n hypotheses, and what decides between them."""
+    """All n hypotheses, with the numbers by which one is chosen."""
 
     bases: Array
     """(n, q, 4) orthonormal, filled up with zeros."""
@@ -38,7 +38,7 @@ class Rivals:
     threshold: float
     """Standard errors from which a change of one number is detected."""
     dof: float
-    """Of the noise."""
+    """Degrees of freedom of the noise."""
     lost: float
     """Chance that may be lost in all, less what is lost to chance leftovers."""
 

@@ -25,7 +25,7 @@ from estimator.session import Array
 CENTRED = 5
 """Blocks over whose mean parity is centred: a manoeuvre's length."""
 MOVES = 0.1
-"""Of the mean energy of ẋ, from which a block is in motion."""
+"""Energy of ẋ, relative to its mean, from which a block is in motion."""
 TYPICAL = 0.8
 """Part of the blocks in motion that must not stand out: a manoeuvre is long, so that few of many stir most."""
 ENOUGH = 4
@@ -35,7 +35,7 @@ LONGEST, TRIED = 1.0, 201
 ARM = 0.01
 """s; what a lever arm of a decimetre looks like in manoeuvres of a second, ω̇·r of g·ω."""
 LEAST = 1e-3
-"""Of the mean energy of ẋ, which no block has less of: the rounding of the sums."""
+"""Least energy of ẋ in a block, relative to its mean: the rounding of the sums."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +62,7 @@ class Lateness:
 
 
 def lateness(course: ParityCourse, rate: float) -> list[Lateness]:
-    """Of every sensor that shows enough of motion on both sides of an onset; samples at ``rate`` Hz."""
+    """The best onset of every sensor that shows enough of motion before and after one; samples at ``rate`` Hz."""
     blocks, (T, m) = course.blocks, course.blocks.mean.shape
     quarters = np.moveaxis(blocks.mean[:, :, None] + blocks.quarters, 1, 2)
     beside = uniform_filter1d(blocks.mean, CENTRED, axis=0, mode="nearest")
@@ -76,7 +76,8 @@ def lateness(course: ParityCourse, rate: float) -> list[Lateness]:
 
 
 def _as_long(one: Lateness, course: ParityCourse, p: Array, felt: Array, quarter: float) -> Lateness:
-    """With the delay that explains parity of quarters (4T, d) best: ẋ·δ falls short where motion is quicker than δ.
+    """Refines the delay to that which explains parity of quarters (4T, d) best: ẋ·δ falls short where motion is quicker
+    than δ.
 
     ``felt`` (4T,) is what the others say of the sensor, quarter by ``quarter``, s.
     """
@@ -101,8 +102,9 @@ def changes(x: Array, gaps: Array) -> Array:
 
 
 def moving(course: ParityCourse, told: Array) -> Array:
-    """(n,) onsets before and after which at least `ENOUGH` blocks tell of lateness, blocks; ``told`` (T,) is how much
-    each does."""
+    """(n,) onsets, in blocks, with at least `ENOUGH` informative blocks on either side; ``told`` (T,) weighs each
+    block.
+    """
     total = np.concatenate([[0.0], np.cumsum(told)])
     square = np.concatenate([[0.0], np.cumsum(told**2)]) + np.finfo(float).tiny
     before = total**2 / square

@@ -29,7 +29,7 @@ RAIL_SAMPLES = 10
 """Samples at one extreme reading from which it may be the end of the converter's range."""
 
 RAIL_PEAK = 5
-"""How many times more often it must stand than the reading next to it; the tail of noise falls more gently."""
+"""Least ratio of samples at the end of a range to those at the next reading; the tail of noise falls more gently."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,17 +39,21 @@ class Blocks:
     first: NDArray[np.int64]
     """(B,) place of the block, in blocks since the start; a gap is a block that was left out."""
     samples: Array
-    """(B,) number in each."""
+    """(B,) number of samples in each."""
     mean: Array
-    """(B, m) of the inputs, m/s² (rad/s)."""
+    """(B, m) mean of the inputs, m/s² (rad/s)."""
     quarters: Array
     """(B, m, 4) means of its quarters less its mean, m/s² (rad/s)."""
     motion: Array
     """(B, m) variance of the inputs within the block, (m/s²)² ((rad/s)²); 0 for averages."""
     jitter: Array
-    """(B, m) the same from the differences of neighbouring samples: noise shows in it, slow motion does not."""
+    """(B, m) variance within the block from the differences of neighbouring samples, (m/s²)² ((rad/s)²): noise shows in
+    it, slow motion does not.
+    """
     flutter: Array
-    """(B, m) the same of V·p: motion shows little in it."""
+    """(B, m) variance of V·p from the differences of neighbouring samples, (m/s²)² ((rad/s)²): motion shows little in
+    it.
+    """
     standing: Array
     """(B, m) share of the samples that read what the one before reads."""
     change: Array
@@ -67,7 +71,7 @@ class Blocks:
     spin: Array
     """(B, 3) mean angular rate, rad/s; (B, 0) where no gyros run beside, as the next two."""
     spin_gain: Array
-    """(B, 3) its change from the sample before the block to its last, rad/s."""
+    """(B, 3) change of the angular rate from the sample before the block to its last, rad/s."""
     spin_square: Array
     """(B, 6) mean of its products, as `pairs`, (rad/s)²."""
 
@@ -94,7 +98,7 @@ class Blocks:
         share = right["samples"] / samples
 
         def mean(name: str) -> Array:
-            """Of both halves, by their samples."""
+            """Mean over both halves, weighed by their samples."""
             weight = share.reshape(-1, *[1] * (left[name].ndim - 1))
             return np.asarray((1.0 - weight) * left[name] + weight * right[name])
 

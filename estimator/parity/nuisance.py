@@ -1,4 +1,4 @@
-"""What motion does to the sensors of a block that are sound: lever arms, delays, vibration, in the means of blocks.
+"""Effects of motion on sound sensors of a block, in the means of blocks: lever arms, delays, vibration.
 
 A sensor with axis e at r, whose samples come τ late, feels
 
@@ -46,13 +46,13 @@ class ParityNuisance:
     """k unknowns u with a standard normal prior each, that move the input of sensor i by Σ u·(signals·c). B blocks."""
 
     signals: Array
-    """(B, K) what moves, in the units that follow from their coefficients."""
+    """(B, K) courses that move the inputs, in the units that follow from their coefficients."""
     coefficient: Array
     """(k, K) c, of each unknown at one sigma; signals times it is m/s² (rad/s)."""
     sensor: NDArray[np.intp]
-    """(k,) whose input it moves."""
+    """(k,) sensor whose input each unknown moves."""
     known: Array
-    """(B, m) what stated positions feel, m/s²."""
+    """(B, m) inputs due to the stated positions, m/s²."""
 
     def moved(self, u: Array) -> Array:
         """(B, m) change of the inputs by the unknowns (k,), m/s² (rad/s)."""
@@ -64,7 +64,7 @@ class ParityNuisance:
 def nuisance_of(
     blocks: Blocks, rest: Mask, reference: ParityReference, norm: float | None, rate: float | None, *, arms: bool = True
 ) -> ParityNuisance:
-    """Of the blocks of a recording.
+    """The nuisance in the blocks of a recording.
 
     Parameters
     ----------
@@ -153,7 +153,7 @@ def _rate_zero(blocks: Blocks, rest: Mask) -> tuple[Array, float]:
 
 
 def reach(reference: ParityReference) -> tuple[Array, Array]:
-    """(m,) how long the lever arms may be, and (m,) one sigma of what is not known of each component, m."""
+    """(m,) largest lengths of the lever arms, and (m,) one sigma of the unknown part of each component, m."""
     if reference.position is None:
         return np.full(len(reference.names), SIZE), np.full(len(reference.names), SIZE)
     length = np.linalg.norm(reference.position - reference.position.mean(axis=0), axis=1)

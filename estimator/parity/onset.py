@@ -31,7 +31,9 @@ from estimator.significance import critical_chi2
 LEVEL = 1e-5
 """Chance that a sound recording is given a fault, if motion is as modelled: far below that of a change."""
 SIGN_LEVEL = 1e-6
-"""The same of noise and delays: variances of a few samples have longer tails than normal."""
+"""Chance that a sound recording is given a fault of noise or delay: variances of a few samples have longer tails than
+normal.
+"""
 SKEW = 0.1
 """Share of a change, in energy, that may lie across: a third of a radian, by motion meanwhile and clipped samples."""
 WRONG_SENSOR = 0.01
@@ -39,9 +41,9 @@ WRONG_SENSOR = 0.01
 NAMED = 5
 """Sensors that name one; two need one more."""
 LATE = 0.85
-"""Of the critical z, which lateness needs: onsets alone are tried, and the larger noise of two is taken."""
+"""Factor on the critical z for lateness: onsets alone are tried, and the larger noise of two is taken."""
 ASKEW = 0.03
-"""The same of lateness, which bias, load and clipped samples do not bend."""
+"""Share of a change to lateness, in energy, that may lie across; bias, load and clipped samples do not bend it."""
 FOLLOWED = 4.0
 """z from which a sensor is late, where parity already flutters with motion as it does beside a late sensor only."""
 OVER_NOISE = 2.0
@@ -63,7 +65,7 @@ class Looked:
 
 
 def faults_of(ledger: Ledger, norm: float | None, rate: float | None) -> Looked:
-    """Of a recording.
+    """Searches a recording for faults.
 
     Parameters
     ----------
@@ -121,7 +123,7 @@ class Search:
     rate: float
     """Hz"""
     complete: bool
-    """Whether no sensor has been left out, so that what blocks hold of flutter and delay is theirs alone."""
+    """Whether no sensor has been left out, so that flutter and delay in the blocks are those of its sensors alone."""
 
     def next(self) -> tuple[list[CourseFault], list[int]]:
         """Faults that begin, and the sensors that they take, by number."""

@@ -1,4 +1,6 @@
-"""What a recording is compared with: the calibrated sensors, their parity space, how a change of one shows there."""
+"""The reference of a recording: the calibrated sensors, their parity space, and the trace of one sensor's change
+there.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -19,7 +21,7 @@ LEAST_VISIBLE = 1e-6
 """Share of a sensor that shows in parity; of less the others say nothing of it."""
 QUADRATIC = ELEMENTS.index("quadratic")
 NEEDED = ("scale", "bias", "axis")
-"""What the reference must know of a sensor that takes part."""
+"""Parameters that the reference must hold of a sensor for it to take part."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +46,7 @@ class ParityReference:
     tangents: Array
     """(m, 3, 2) orthonormal, orthogonal to each axis, dimensionless."""
     covariance: Array
-    """(5 m, 5 m) of the reference, SI with scale relative; zero where it does not know an element."""
+    """(5 m, 5 m) covariance of the reference, SI with scale relative; zero where it does not know an element."""
     repeatability: Array
     """(m,) one sigma of the zero from one use to the next, m/s² (rad/s)."""
     position: Array | None
@@ -71,12 +73,13 @@ class ParityReference:
         )
 
     def inputs(self, readings: Array) -> Array:
-        """(R, m) what the sensors say was applied, m/s² (rad/s): u/K − b − c·a², from readings (R, n) of all n sensors
-        of the recording, reading units."""
+        """(R, m) applied inputs by the sensors, m/s² (rad/s): u/K − b − c·a², from readings (R, n) of all n sensors of
+        the recording, reading units.
+        """
         return self.felt(readings[:, self.column])
 
     def felt(self, readings: Array) -> Array:
-        """(R, m) the same from the readings (R, m) of these sensors alone."""
+        """(R, m) applied inputs from the readings (R, m) of these sensors alone."""
         w = (readings - self.offset) / self.scale - self.bias
         return 2.0 * w / (1.0 + np.sqrt(np.maximum(1.0 + 4.0 * self.quadratic * w, 0.0)))
 
@@ -85,7 +88,7 @@ class ParityReference:
         return np.asarray(self.scale * (inputs + self.bias + self.quadratic * inputs**2) + self.offset)
 
     def others(self, inputs: Array) -> Array:
-        """(R, m) what the others say that each sensor feels, m/s² (rad/s), from inputs (R, m)."""
+        """(R, m) input of each sensor as the others predict it, m/s² (rad/s), from inputs (R, m)."""
         return np.asarray(inputs - inputs @ self.parity @ self.parity.T / np.maximum(self.visible, LEAST_VISIBLE))
 
     def vector(self, inputs: Array) -> Array:
@@ -135,7 +138,7 @@ def reference_of(sensors: Sequence[Sensor], calibration: Calibration, kind: str)
 
 
 def too_few(used: int, present: int, kind: str) -> str:
-    """Why there is no parity."""
+    """The reason why there is no parity, as a message."""
     if present >= FEWEST:
         parts = {"used": used, "present": present, "kind": kind, "fewest": FEWEST}
         return say(

@@ -35,7 +35,9 @@ SLOWEST = 0.9
 """Largest correlation of neighbouring groups that is believed."""
 
 LEAST_DOF = (4.0, 2.0, 16.0)
-"""Of the noise, however slow it is: the first and the second times d, at most the third; more sensors tell more."""
+"""Least degrees of freedom of the noise, however slow it is: d times the first and the second number, but at most the
+third; more sensors determine it better.
+"""
 
 APART = 0.01
 """Relative eigenvalue of P∘P below which sensors are not distinguished; it matters as much as its square root."""
@@ -46,7 +48,7 @@ DRAWN = 6.0
 
 @dataclass(frozen=True, eq=False)
 class ParityChange:
-    """What parity says of the sensors' change since the reference. d = m − 3, s excited directions, q = s·d."""
+    """The sensors' change since the reference, in parity space. d = m − 3, s excited directions, q = s·d."""
 
     reference: ParityReference
     norm: float
@@ -58,15 +60,17 @@ class ParityChange:
     noise: Array
     """(q, q) covariance of θ.ravel() from the recording's noise, (m/s²)² ((rad/s)²)."""
     known: Array
-    """(q, q) the same from the reference calibration and the stated repeatability."""
+    """(q, q) covariance of θ.ravel() from reference calibration and stated repeatability, (m/s²)² ((rad/s)²)."""
     motion: Array
-    """(q, q) the same from what motion does to sound sensors (`freed`); zero where nothing was allowed for."""
+    """(q, q) covariance of θ.ravel() from the effects of motion on sound sensors (`freed`), (m/s²)² ((rad/s)²); zero
+    where nothing was allowed for.
+    """
     dof: float
     """Groups less what was fitted to each sensor."""
     residual_rms: float
-    """Of the parity vector's elements after the fit, block means, m/s² (rad/s)."""
+    """Root mean square of the parity vector's elements after the fit, block means, m/s² (rad/s)."""
     quadratic: Array
-    """(m, s) how a² runs along z: what a change of c looks like, (m/s²)²."""
+    """(m, s) regression of a² on z: the trace of a change of c, (m/s²)²."""
     course: Array
     """(groups, m) means over the groups of V·p, m/s² (rad/s)."""
     course_sigma: Array
@@ -74,16 +78,18 @@ class ParityChange:
 
     @property
     def covariance(self) -> Array:
-        """(q, q) of θ.ravel(), (m/s²)² ((rad/s)²)."""
+        """(q, q) covariance of θ.ravel(), (m/s²)² ((rad/s)²)."""
         return self.noise + self.known + self.motion
 
     @property
     def complete(self) -> bool:
-        """Whether bias and scale can be distinguished: all four of (1, n) are excited."""
+        """Whether bias and scale can be told apart: all four of (1, n) are excited."""
         return self.excited.shape[1] == 4
 
     def signature(self, sensor: int, rows: Array) -> Array:
-        """(q, k) of one sensor, m/s² (rad/s) per unit of the change, from k columns of its row of ΔA, rows (4, k)."""
+        """(q, k) signature of a change of one sensor, m/s² (rad/s) per unit of it, from k columns of its row of ΔA,
+        rows (4, k).
+        """
         z = self.excited.T @ rows
         return np.einsum("sk,d->sdk", z, self.reference.parity[sensor]).reshape(-1, rows.shape[1])
 

@@ -1,4 +1,4 @@
-"""What parity found; no algorithms. The JSON form is ``imu-parity/1``."""
+"""Results of a parity check; no algorithms. The JSON form is ``imu-parity/1``."""
 
 import math
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ KINDS = (BIAS, SCALE, AXIS, SEVERAL)
 STEP, RAMP, STUCK, ZERO, FULL_SCALE, GAIN = "step", "ramp", "stuck", "zero", "full-scale", "gain"
 NOISE, DELAY, EXCHANGED, INTERMITTENT = "noise", "delay", "exchanged", "intermittent"
 COURSE_KINDS = (STEP, RAMP, STUCK, ZERO, FULL_SCALE, GAIN, NOISE, DELAY, EXCHANGED, INTERMITTENT)
-"""How a sensor fails in service."""
+"""Kinds of failure of a sensor in service."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Candidate:
     ratio: float
     """Generalised likelihood ratio: the fall of χ²."""
     p_value: float
-    """Of the ratio, for this hypothesis alone."""
+    """p-value of the ratio, for this hypothesis alone."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class CourseFault:
     """A sensor that fails within the recording, or all through it."""
 
     sensor: str | None
-    """None where parity cannot say which of the ``suspects``: then there are two at least."""
+    """Name of the sensor; None where parity cannot say which of the ``suspects``: then there are two at least."""
     suspects: tuple[str, ...]
     """Sensors that explain it about equally well, the likeliest first; the ``sensor`` alone where one is named."""
     kind: str
@@ -44,12 +44,13 @@ class CourseFault:
     since: float
     """s since the start, or rows where no rate is known; 0 where it lasts from the first."""
     until: float | None
-    """Like ``since``; None where it lasts to the end."""
+    """End of the fault, as ``since``; None where it lasts to the end."""
     since_sigma: float
     """One sigma of ``since``, its unit."""
     size: float | None
-    """Of the sensor's change: step, zero, full scale, intermittent m/s² (rad/s); ramp m/s² (rad/s) per second; gain
-    relative; noise m/s² (rad/s), one sigma of a sample; delay s. None where it cannot be told."""
+    """Size of the sensor's change: step, zero, full scale, intermittent m/s² (rad/s); ramp m/s² (rad/s) per second;
+    gain relative; noise m/s² (rad/s), one sigma of a sample; delay s. None where it is not known.
+    """
     sigma: float | None
     """One sigma of ``size``, its unit."""
     p_value: float
@@ -58,7 +59,7 @@ class CourseFault:
 
 @dataclass(frozen=True)
 class Sight:
-    """What the recording shows of one parameter of one sensor, if that alone has changed.
+    """Visibility of one parameter of one sensor in the recording, if that alone has changed.
 
     Where another sensor was isolated, its change is taken out first. All None where nothing can be seen.
     """
@@ -85,7 +86,7 @@ class Sight:
 
 
 NOTHING = Sight(None, None, None, None)
-"""Of a parameter that a recording tells nothing of."""
+"""Sight of a parameter that a recording does not show."""
 
 
 @dataclass(frozen=True)
@@ -94,14 +95,14 @@ class SensorParity:
 
     name: str
     visible_share: float
-    """Of any change of this sensor, in energy: 1 − eᵢᵀ(HᵀH)⁻¹eᵢ. The rest looks like motion."""
+    """Part of any change of this sensor, in energy, that parity shows: 1 − eᵢᵀ(HᵀH)⁻¹eᵢ; the rest looks like motion."""
     bias: Sight
     scale: Sight
     axis: Sight
 
 
 def _before_motion(document: Json) -> Json:
-    """What documents lack that were written before motion was allowed for: they took it to do nothing."""
+    """Completes documents from before motion was allowed for, in which it was taken to have no effect."""
     unmoved = {"chi2_unmoved": document["chi2"], "p_value_unmoved": document["p_value"]}
     return {"clipped": {}, "moving": False, "suspects": [], "motion_share": 0.0, **unmoved} | document
 
@@ -124,7 +125,7 @@ class ParityResult(
     chi2: float
     dof: int
     p_value: float
-    """Of χ² under no change."""
+    """p-value of χ² under no change."""
     detected: bool
     false_alarm: float
     """Chance that an unchanged block is called changed."""
@@ -141,15 +142,15 @@ class ParityResult(
     slope: Array
     """(d, 3) change per unit of the applied vector in parity space, dimensionless."""
     covariance: Array
-    """(4 d, 4 d) of (constant, g·slope columns), (m/s²)² ((rad/s)²); only what is ``excited`` is known."""
+    """(4 d, 4 d) covariance of (constant, g·slope columns), (m/s²)² ((rad/s)²); only what is ``excited`` is known."""
     excited: Array
     """(4, s) directions of (1, n/g) that the recording excites, dimensionless."""
     unobservable: int
     """Dimensions of the sensors' 4 m changes that no recording shows: those of a common bias and any linear map."""
     residual_rms: float
-    """Of the parity vector's elements after the fit, block means, m/s² (rad/s)."""
+    """Root mean square of the parity vector's elements after the fit, block means, m/s² (rad/s)."""
     blocks: int
-    """Of the recording; ``used`` of them, in ``groups`` independent stretches."""
+    """Number of blocks of the recording; ``used`` of them, in ``groups`` independent stretches."""
     used: int
     groups: int
     left_out: dict[str, int]
@@ -165,14 +166,14 @@ class ParityResult(
     """χ² if motion did nothing to sound sensors, and ``p_value_unmoved`` of it."""
     p_value_unmoved: float
     suspects: tuple[Candidate, ...]
-    """What would be the candidates if motion did nothing to sound sensors; none unless ``moving``."""
+    """The candidates if motion did not affect sound sensors; empty unless ``moving``."""
     motion_share: float
-    """Of the variance of what is seen, how much motion is answerable for, 0 to 1."""
+    """Share of the observed variance that motion accounts for, 0 to 1."""
     block_seconds: float | None
     duration: float | None
     """s"""
     course: Array
-    """(groups, m) mean over every group of what parity shows of each sensor, V·Vᵀa, m/s² (rad/s)."""
+    """(groups, m) mean over every group of each sensor's trace in parity, V·Vᵀa, m/s² (rad/s)."""
     course_sigma: Array
     """(m,) scatter of the groups about the fit."""
     course_time: Array

@@ -1,4 +1,5 @@
-"""When a course begins to differ: the likelihood ratio of every onset and end, beside noise and motion of known size.
+"""Finds the time at which a course begins to differ: the likelihood ratio of every onset and end, beside known noise
+and motion.
 
 Theory
 ------
@@ -31,7 +32,7 @@ from estimator.session import Array
 NEAR = 31
 """Blocks over which the noise of a block is smoothed: a manoeuvre's length; a median of so many is known to a fifth."""
 LOCAL = 0.5
-"""Of the mean square of three blocks, which must not be taken for less: motion shakes a few blocks only."""
+"""Least local noise, as a part of the mean square of three blocks: motion shakes a few blocks only."""
 FAR = 100.0
 """Noise of a block; how far a course may wander that nothing is said of."""
 MEMORIES = (2.0, 8.0, 32.0, 128.0)
@@ -90,7 +91,7 @@ SHORTEST = 2
 
 
 def scan_of(x: Array, variance: Array, colour: Array, fixed: Array) -> Scan:
-    """Of a course x (T,) with the variances of its blocks (T,), colours q (τ,) and X·Λ·Xᵀ (T, T)."""
+    """The scan of a course x (T,) with the variances of its blocks (T,), colours q (τ,) and X·Λ·Xᵀ (T, T)."""
     R = covariance(variance, colour, fixed)
     root = cholesky(R, lower=True, check_finite=False)
     return Scan(root, solve_triangular(root, x, lower=True, check_finite=False), variance)

@@ -1,4 +1,4 @@
-"""How a sensor fails from one moment on: the shapes of its course, and which one it is.
+"""The shapes of a sensor's course when it fails from one moment on, and the choice among them.
 
 The onset of every kind is tried at every quarter of a block, and so dated: its error is that of the likelihood over the
 onsets. One that comes and goes is found by turning stretches on and off, each while that explains the course better.
@@ -27,7 +27,7 @@ TOGGLES = 60
 
 @dataclass(frozen=True, eq=False)
 class FaultShape:
-    """The best of one kind."""
+    """The best shape of one kind."""
 
     kind: str
     square: float
@@ -59,8 +59,9 @@ def onsets(course: ParityCourse) -> Array:
 def best_onset(
     course: ParityCourse, scan: Scan, kind: str, factor: Array | None, tried: Array | None = None
 ) -> FaultShape:
-    """Of a plain kind: a shift, its integral, or a shift of what the sensor feels (T,) times a size; of all onsets, or
-    of those tried (n,), blocks."""
+    """The best onset of a plain kind: a shift, its integral, or a shift of the sensor's input (T,) times a size; out of
+    all onsets, or of those tried (n,), blocks.
+    """
     tried = onsets(course) if tried is None else tried
     if kind == RAMP:
         shapes = 0.5 * entered(course, tried) ** 2 + np.maximum(course.blocks.first[:, None] - tried, 0.0)
@@ -109,7 +110,7 @@ def coming_and_going(course: ParityCourse, scan: Scan, first: int, until: int) -
 
 
 def lag(course: ParityCourse, sensor: int) -> Array:
-    """(T,) what a sensor loses that answers one sample late, m/s² (rad/s)."""
+    """(T,) loss of a sensor that responds one sample late, m/s² (rad/s)."""
     return np.asarray(-course.blocks.gain @ course.reference.axes[sensor] / course.blocks.samples)
 
 

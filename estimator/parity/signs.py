@@ -30,8 +30,8 @@ GROWN = 3.0
 FEW = 5
 """Blocks that show a level."""
 FOLLOWS = 0.5
-"""Of the scatter of the grown noise, in logarithms, that its ratio to the motion of the others has at most where it is
-motion."""
+"""Grown noise is taken for motion where its ratio to the motion of the others scatters, in logarithms, by at most this
+part of its own scatter."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +68,8 @@ def exchange_of(course: ParityCourse) -> Exchange | None:
 
 def _alone(course: ParityCourse, weight: Array, before: Array, after: Array) -> bool:
     """Whether nothing else is as good in the last blocks: not the readings as they are, and not a course of one sensor,
-    which has a number for every block to do it with."""
+    which has a free number for every block.
+    """
     if after.sum() > LEFT * before.sum():
         return False
     units = course.directions / np.linalg.norm(course.directions, axis=1, keepdims=True)
@@ -90,7 +91,7 @@ class Sign:
     noisier: Array
     """(T,) variance that it adds to a block's mean, whitened."""
     follows: bool = False
-    """Whether the noise is there only as far as the others move."""
+    """Whether the noise occurs only as far as the others move."""
 
 
 def growth_of(course: ParityCourse) -> Sign | None:

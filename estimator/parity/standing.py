@@ -32,7 +32,7 @@ MOVED = 2.0
 ERRORS = 6.0
 """Standard errors of what the others say, that their movement must exceed: none in a million blocks by chance."""
 LEAST_CHANCE = 1e-6
-"""Of a run in a sound sensor, in any block of any recording."""
+"""Chance of a run in a sound sensor, in any block of any recording, below which it is dead."""
 BEYOND = 1.2
 """Times what was applied at most that the end of a range lies at, at least: a reading that froze lies within."""
 SELDOM = 0.9
@@ -83,8 +83,9 @@ def runs_of(marks: Array) -> Iterator[tuple[int, int]]:
 
 
 def cut_off(ledger: Ledger, blocks: Blocks, moved: Array, i: int, first: int, until: int) -> bool:
-    """Whether sensor i stands at its outermost reading where the others say that it is driven beyond: then it is sound,
-    and its range too small."""
+    """Whether sensor i stands at its outermost reading while the others show that it is driven beyond: it is then
+    sound, and its range too small.
+    """
     top, bottom, reading = blocks.highest[:, i].max(), blocks.lowest[:, i].min(), blocks.lowest[first, i]
     outward = float(reading == top) - float(reading == bottom)
     outward *= float(np.sign(ledger.reference.scale[i]))
@@ -93,13 +94,13 @@ def cut_off(ledger: Ledger, blocks: Blocks, moved: Array, i: int, first: int, un
 
 
 def error_of(ledger: Ledger, blocks: Blocks, i: int) -> float:
-    """What the others say of sensor i in a block is wrong by no more, m/s² (rad/s): `ERRORS` standard errors."""
+    """Largest error of the others' estimate of sensor i in a block, m/s² (rad/s): `ERRORS` standard errors."""
     flutter = np.median(blocks.flutter[:, i] / blocks.samples)
     return float(ERRORS * np.sqrt(flutter) / max(ledger.reference.visible[i], LEAST_VISIBLE))
 
 
 def chance(ledger: Ledger, blocks: Blocks, same: Array, moved: Array, i: int, first: int, until: int) -> float:
-    """That a sound sensor i stands still in the blocks from ``first`` to ``until``, at most."""
+    """Largest chance that a sound sensor i stands still in the blocks from ``first`` to ``until``."""
     reference, run = ledger.reference, slice(first, until)
     live = ~same[:, i]
     step = ledger.quantum[i] if np.isfinite(ledger.quantum[i]) else 0.0

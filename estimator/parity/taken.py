@@ -1,4 +1,4 @@
-"""When the samples of a recording were taken, of which some may be missing or left out."""
+"""Times at which the samples of a recording were taken, some of which may be missing or left out."""
 
 from typing import overload
 

@@ -15,7 +15,7 @@ from estimator.session import ACCELEROMETER, Array, CalibrationSession, Stand
 
 
 def head_kind(like: CalibrationSession) -> str:
-    """Whose elevation the plan speaks of: the accelerometers' α where there are any, else the gyros' χ."""
+    """The kind of sensor whose elevation is planned: accelerometers (α) where there are any, else gyros (χ)."""
     kinds = {s.kind for s in like.sensors}
     return ACCELEROMETER if ACCELEROMETER in kinds else kinds.pop()
 
@@ -86,7 +86,9 @@ def expected_sigmas(session: CalibrationSession) -> tuple[Array, Array]:
     scale = np.array([s.nominal_scale for s in session.sensors])
 
     def four(columns: Array) -> Array:
-        """(m, 4) of the five elements (m, 5), SI, with relative scale and both turns as one."""
+        """(m, 4) sigmas by parameter from those of the five elements (m, 5), SI, with relative scale and both turns as
+        one.
+        """
         return np.stack(
             [columns[:, 0] / scale, columns[:, 1], columns[:, 2], np.hypot(columns[:, 3], columns[:, 4])], axis=-1
         )
@@ -95,7 +97,7 @@ def expected_sigmas(session: CalibrationSession) -> tuple[Array, Array]:
 
 
 def worst(sigmas: Array) -> Array:
-    """(4,) of the worst sensor, of sigmas (m, 4), SI; NaN where one of them does not observe it."""
+    """(4,) sigmas of the worst sensor, from sigmas (m, 4), SI; NaN where one of them does not observe it."""
     return np.asarray(sigmas.max(axis=0))
 
 

@@ -1,4 +1,4 @@
-"""What a session that is being measured still lacks: the settings of the stand, or the orientations, to come.
+"""The settings of the stand, or the orientations, that a session under way still lacks.
 
 On a two-axis stand the schedule is N equal steps of β a run, from the first β that was set; N follows from the smallest
 step so far, or is stated. In arbitrary orientations it is what `rank_of_orientations` asks to add. Neither needs a fit:
@@ -21,7 +21,9 @@ from estimator.results import PARAMETERS
 from estimator.session import ACCELEROMETER, TWO_AXIS_STAND, Array, CalibrationSession
 
 SAME = 0.25
-"""Of a step: a row this near to a setting stands there. Half a step would be another setting's as well."""
+"""Largest distance from a setting, as a part of a step, at which a row belongs to it. Half a step would be another
+setting's as well.
+"""
 MOST = 360
 """Equal steps a run: whole degrees are finer than anybody turns a head by."""
 RUNS = ("direct", "flipped")
@@ -40,7 +42,7 @@ class ExpectedSigma(Document, order=("sensor", "parameter", "so_far", "complete"
     parameter: str
     so_far: float | None
     complete: float | None
-    """With every position of the programme."""
+    """Sigma with every position of the programme."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +53,7 @@ class Missing(
     keys={"is_complete": "complete"},
     forms={"settings": SETTINGS},
 ):
-    """What is done and what is to come."""
+    """Positions done, and those still to come."""
 
     done: int
     """Positions so far."""
@@ -62,9 +64,9 @@ class Missing(
     directions: Array
     """(k, 3) where up should point, unit vectors, block axes; none on a stand."""
     unseen: tuple[str, ...]
-    """What the positions so far leave open."""
+    """Parameters that the positions so far leave open."""
     expected: tuple["ExpectedSigma", ...] = ()
-    """How well parameters are known so far and would be; on a stand only."""
+    """Sigmas of the parameters so far and at the end; on a stand only."""
 
     @property
     def is_complete(self) -> bool:
@@ -73,7 +75,7 @@ class Missing(
 
 
 def missing(session: CalibrationSession, positions: int | None = None, *, both_runs: bool = True) -> Missing:
-    """What the rows so far lack of a whole session.
+    """The rows that a session so far lacks of a whole one.
 
     positions : equal steps a run; None: as the smallest step so far says. ``both_runs``: whether the block is flipped.
 
@@ -137,7 +139,7 @@ def _expected(rows: CalibrationSession, so_far: Array, complete: Array) -> tuple
 
 
 def _open(expected: tuple[ExpectedSigma, ...]) -> tuple[str, ...]:
-    """``A1 scale``: what is not observed yet."""
+    """Parameters not observed yet, as ``A1 scale``."""
     return tuple(
         say("{sensor} {parameter}", sensor=estimate.sensor, parameter=estimate.parameter)
         for estimate in expected

@@ -1,4 +1,4 @@
-"""What a set of still orientations identifies, before it is flown, and which orientations to add.
+"""Parameters that a set of still orientations identifies, before it is flown, and the orientations to add.
 
 The information's rank over what the parameters may do (no net turn of the axes, which nothing but stated directions
 can tell) is what the set identifies.
@@ -39,10 +39,10 @@ class OrientationRank(
     keys={"sigma_by_name": "sigma"},
     forms={"weakest": named("parameter", "sigma")},
 ):  # fmt: skip
-    """What R orientations tell of m accelerometers."""
+    """Information of R orientations on m accelerometers."""
 
     directions: Array
-    """(R, 3) of the specific force, unit vectors, block axes."""
+    """(R, 3) directions of the specific force, unit vectors, block axes."""
     rank: int
     parameters: int
     weakest: tuple[str, float]

@@ -28,7 +28,7 @@ GOLDEN = 0.618034
 """Fraction of the golden ratio: its multiples scatter evenly, whatever their number."""
 
 PASSES = 30
-"""Over all rows; a handful is usual, and this ends what would go in circles by rounding."""
+"""Most passes over all rows; a handful is usual, and this ends what would go in circles by rounding."""
 SLIGHT = 1e-6
 """Gain in ln|M| below which an exchange is not worth it: a millionth of the confidence volume."""
 

@@ -25,7 +25,7 @@ from estimator.results import PARAMETERS
 from estimator.session import ACCELEROMETER, TWO_AXIS_STAND, Array, CalibrationSession
 
 ELEVATIONS = np.radians(np.arange(15.0, 75.1, 2.5))
-"""What the search and the chart look at, rad. Beyond, one of the two parts of the vector hardly changes."""
+"""Elevations that the search and the chart cover, rad. Beyond, one of the two parts of the vector hardly changes."""
 
 FEWEST = 6
 """Below five equal steps the second harmonic has no trace; one more leaves something to judge the fit by."""
@@ -38,8 +38,9 @@ MOST_READINGS = 1728
 their square, would fill the memory; up to here they take less than 400 MB."""
 
 NEARLY = 1.1
-"""Where no number reaches the tolerances: the fewest positions within this of what the most would give. A tenth of
-uncertainty is not worth twice the time on the stand."""
+"""Largest ratio to the result with the most positions, where no number reaches the tolerances: the fewest positions
+within it are taken, since a tenth of uncertainty is not worth twice the time on the stand.
+"""
 
 
 def plan(like: CalibrationSession, request: Request | None = None, *, sigma: Array | None = None) -> Plan:
@@ -113,7 +114,8 @@ def best_elevation(like: CalibrationSession, request: Request, sigma: Array) -> 
 
 
 def least(figure: Callable[[float], float], grid: Array) -> float:
-    """Where a figure is least, in the grid's unit: the best of ``grid`` (k,), then between its neighbours.
+    """Minimises a figure: the place of the minimum in the grid's unit, the best of ``grid`` (k,), then between its
+    neighbours.
 
     The middle where all is infinite.
     """
@@ -174,7 +176,7 @@ def judged(session: CalibrationSession, request: Request) -> tuple[JudgedParamet
 
 
 def verdict(sigma: float, tolerance: float, request: Request) -> str:
-    """How an expected sigma serves a tolerance."""
+    """The verdict on an expected sigma for a tolerance."""
     if np.isinf(tolerance):
         return "not judged"
     used = request.coverage * sigma / tolerance

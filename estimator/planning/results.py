@@ -1,4 +1,4 @@
-"""What planning is asked and what it answers; no algorithms. SI throughout; scale is relative."""
+"""Requests and results of planning; no algorithms. SI throughout; scale is relative."""
 
 from dataclasses import dataclass, field
 
@@ -25,14 +25,14 @@ class ToleranceSet:
     """rad."""
 
     def row(self) -> Array:
-        """(4,) in the order of `PARAMETERS`, SI, relative for scale; infinite where not judged."""
+        """(4,) tolerances in the order of `PARAMETERS`, SI, relative for scale; infinite where not judged."""
         values = [getattr(self, name) for name in PARAMETERS]
         return np.array([np.inf if v is None else v for v in values], dtype=float)
 
 
 @dataclass(frozen=True)
 class Request:
-    """What is asked of a plan; None lets the planner choose."""
+    """Request for a plan; None lets the planner choose."""
 
     elevation: float | None = None
     """α, or χ of a block of gyros alone, rad."""
@@ -42,7 +42,7 @@ class Request:
     """True for flipped."""
     wanted: ToleranceSet = field(default_factory=ToleranceSet)
     gyro_wanted: ToleranceSet | None = None
-    """For the gyros of a mixed block; None: the same as ``wanted``."""
+    """Tolerances of the gyros in a mixed block; None: the same as ``wanted``."""
     time_per_position: float = 120.0
     """s."""
     coverage: float = 2.0
@@ -77,7 +77,7 @@ class Sweep:
     total: Array
     """(k, 4) one sigma by `PARAMETERS`; NaN where not observed."""
     repeatability: Array
-    """(k, 4) the same from session to session on one stand."""
+    """(k, 4) one sigma from session to session on one stand, by `PARAMETERS`; NaN where not observed."""
     conditioning: Array
     """(k,) ρ."""
 
@@ -99,12 +99,12 @@ class Plan(
     """A session proposed or judged before it is measured."""
 
     schedule: CalibrationSession
-    """With the readings that perfect nominal sensors would give."""
+    """The planned session, with the readings that perfect nominal sensors would give."""
     request: Request
     elevation: float
     """rad."""
     formula_elevation: float
-    """(6) for this stand and N, rad."""
+    """Elevation by formula (6) for this stand and N, rad."""
     positions: int
     """N of each run."""
     seconds: float
@@ -114,7 +114,9 @@ class Plan(
     """The calibration that the session would give: sigmas, what is observable, what is known only together."""
     judged: tuple[JudgedParameter, ...]
     limits: tuple[Limit, ...]
-    """What the session would detect of every cause and which it cannot see; none beyond thousands of readings."""
+    """Smallest effects of every cause that the session would detect, and the causes it cannot see; empty beyond
+    thousands of readings.
+    """
     optimal: OptimalPositions
     over_positions: Sweep
     over_elevation: Sweep
@@ -126,11 +128,11 @@ class Plan(
 
     @property
     def reached(self) -> bool | None:
-        """Whether every judged parameter leaves its tolerance the share that was asked for; None where none is."""
+        """Whether every judged parameter leaves its tolerance the requested share; None where none is judged."""
         verdicts = {j.verdict for j in self.judged} - {"not judged"}
         return verdicts == {"enough"} if verdicts else None
 
     @property
     def unseen(self) -> tuple[str, ...]:
-        """``A1.quadratic``, …: what the plan does not observe."""
+        """Names of the parameters that the plan does not observe, as ``A1.quadratic``."""
         return tuple(f"{j.sensor}.{j.parameter}" for j in self.judged if j.sigma is None)

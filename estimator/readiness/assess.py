@@ -20,12 +20,13 @@ and a record of a twentieth of the programme has seen the first of it."""
 CALM = 20
 """Means after the last disturbance from which the rest of a record is judged without what came before."""
 FELT = 0.5
-"""Of gravity along an axis from which a drift could be the scale factor's: less of it would need a larger change than
-the zero's own."""
+"""Gravity along an axis, as a part of g, from which a drift could be the scale factor's: less of it would need a larger
+change than the zero's own.
+"""
 
 
 def readiness(session: CalibrationSession, question: Question, rng: np.random.Generator) -> Readiness:
-    """Whether the unit is warm and still enough for the programme that is planned.
+    """Decides whether the unit is warm and still enough for the planned programme.
 
     Parameters
     ----------
@@ -107,7 +108,7 @@ def _judged(
 def _persisting(
     session: CalibrationSession, series: Series, rest: Series, question: Question, allowed: Array
 ) -> list[Disturbance]:
-    """What does not pass by itself."""
+    """Disturbances that do not pass by themselves."""
     names = tuple(sensor.name for sensor in session.sensors)
     tolerances = [question.tolerances.get(sensor.kind) for sensor in session.sensors]
     quadratic = np.array(
@@ -149,7 +150,7 @@ def _outlook(
 
 
 def _shares(outlook: DriftOutlook, session: CalibrationSession, series: Series, question: Question) -> DriftOutlook:
-    """With the bound as shares of the tolerances."""
+    """The outlook with its bound as shares of the tolerances."""
     i = [sensor.name for sensor in session.sensors].index(outlook.name)
     tolerance = question.tolerances[outlook.kind]
     felt = float(np.abs(np.median(series.value[:, i])))
@@ -165,7 +166,7 @@ def _shares(outlook: DriftOutlook, session: CalibrationSession, series: Series, 
 def _thermal(
     session: CalibrationSession, series: Series, question: Question, rng: np.random.Generator
 ) -> DriftOutlook | None:
-    """What the thermometer says of the zeros, by the coefficient that is stated."""
+    """Forecast of the zeros from the thermometer and the stated coefficient; None where either is missing."""
     kind = ACCELEROMETER if any(s.kind == ACCELEROMETER for s in session.sensors) else session.sensors[0].kind
     coefficient, tolerance = (question.coefficient or {}).get(kind), question.tolerances.get(kind)
     warmth = series.temperature
@@ -212,7 +213,7 @@ def _stated(base: Readiness, creep: Disturbance | None) -> Readiness:
 
 
 def _unread(session: CalibrationSession, question: Question, faults: tuple[RecordFault, ...]) -> Readiness:
-    """No judgement is possible."""
+    """The answer where no judgement is possible."""
     names = tuple(sensor.name for sensor in session.sensors)
     none = np.zeros((0, len(names)))
     fields = (
@@ -232,5 +233,5 @@ def _unread(session: CalibrationSession, question: Question, faults: tuple[Recor
 
 
 def _with_record(base: Readiness, series: Series) -> Readiness:
-    """With what was recorded."""
+    """The answer with the recorded means."""
     return replace(base, recorded=float(series.edges[-1, 1]), time=series.time, change=series.change)

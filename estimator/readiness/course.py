@@ -30,13 +30,15 @@ TAUS = 60.0 * 1.3 ** np.arange(20)
 PAIRS = np.array([(0, 0), *((j, j) for j in range(len(TAUS))), *combinations(range(len(TAUS)), 2)])
 """Numbers of the τ: none, which uses neither, then one, which uses the first, then two."""
 SETTLINGS = np.tile(PAIRS, (2, 1))
-"""(J, 2) of every shape of the course: first without a steady drift, then with one."""
+"""(J, 2) numbers of the τ of every shape of the course: first without a steady drift, then with one."""
 STEADY = np.repeat([0, 1], len(PAIRS))
 """(J,) whether there is a steady drift."""
 USED = np.tile([0] + [1] * len(TAUS) + [2] * (len(PAIRS) - len(TAUS) - 1), 2)
-"""(J,) settlings of each."""
+"""(J,) number of settlings of each shape."""
 PRIOR = np.log(1 / 3 / np.bincount(USED)[USED])
-"""(J,) of each: none, one and two settlings are as likely beforehand, and so is a steady drift or none."""
+"""(J,) ln prior chance of each shape: none, one and two settlings are as likely beforehand, and so is a steady drift or
+none.
+"""
 WALKS = np.concatenate([[0.0], np.logspace(-3, 3, 7)])
 """ρ, the walk's variance over the record in variances of one mean: from far below what a hundred means show to where
 white noise no longer matters."""
@@ -60,18 +62,19 @@ class SettlingCourse:
     tau: Array
     """(C, 2) s."""
     mean: Array
-    """(C, 3) of d and both a, m/s² or rad/s; of what is not there zero."""
+    """(C, 3) means of d and both a, m/s² or rad/s; zero for what is not in the shape."""
     root: Array
     """(C, 3, 3) lower root of their covariance over σ², dimensionless."""
     scatter: Array
     """(C,) sum of squares that is left, (m/s²)² or (rad/s)²."""
     freedom: int
-    """Degrees of freedom of it."""
+    """Degrees of freedom of the scatter."""
 
 
 def courses(time: Array, value: Array, place: Array, count: Array, wide: Array) -> tuple[SettlingCourse, ...]:
-    """Of every column of ``value`` (n, m), m/s² or rad/s, at ``time`` (n,), s; ``place`` (n,) numbers of positions,
-    ``count`` (n,) samples; ``wide`` (m,) one sigma of the priors of d and a, m/s² or rad/s."""
+    """The courses of every column of ``value`` (n, m), m/s² or rad/s, at ``time`` (n,), s; ``place`` (n,) numbers of
+    positions, ``count`` (n,) samples; ``wide`` (m,) one sigma of the priors of d and a, m/s² or rad/s.
+    """
     t = time - time[0]
     span = float(t[-1])
     numbers, members = np.unique(place, return_inverse=True)
@@ -123,7 +126,7 @@ def _whitened(t: Array, count: Array, walk: float, Z: Array, X: Array, value: Ar
 
 @dataclass(frozen=True, eq=False)
 class _Cells:
-    """Of one ρ: every settling (first axis) and sensor (second)."""
+    """The cells of one ρ: every settling (first axis) and sensor (second)."""
 
     evidence: Array
     mean: Array
@@ -187,7 +190,7 @@ def wander(course: SettlingCourse, duration: float) -> float:
 
 
 def _variance(course: SettlingCourse, cell: int, means: int, growth: float, duration: float) -> float:
-    """Of the forecast, (m/s²)² or (rad/s)², by a record ``growth`` times as long."""
+    """Variance of the forecast, (m/s²)² or (rad/s)², by a record ``growth`` times as long."""
     span, tau, walk = growth * course.span, course.tau[cell], course.walk[cell] * growth**2
     sigma2 = course.scatter[cell] / course.freedom / growth
     x = (np.arange(means) + 0.5) / means

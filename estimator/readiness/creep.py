@@ -12,7 +12,7 @@ from estimator.session import Array
 from estimator.significance import p_value
 
 CHANCE = 1e-3
-"""With which drifts of the sensors' own may look like a turn."""
+"""Chance with which drifts of the sensors' own may look like a turn."""
 LEAVES = 0.05
 """Chance from which what a turn leaves is noise."""
 FEWEST = 4

@@ -1,4 +1,4 @@
-"""What is wrong with a record, so that it supports no judgement, or a weaker one."""
+"""Faults of a record that leave no judgement possible, or only a weaker one."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -23,7 +23,7 @@ GAP = 5.0
 
 
 class FaultKind(StrEnum):
-    """What is wrong."""
+    """Kind of fault of a record."""
 
     NO_TIME = "no-time"
     CLOCK_BACK = "clock-back"
@@ -41,7 +41,7 @@ class FaultKind(StrEnum):
 
 
 HARMLESS = frozenset({FaultKind.GAP, FaultKind.ALONE})
-"""That are said, and judged all the same."""
+"""Faults that are reported, but leave the record to be judged."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ class RecordFault(Document, order=("kind", "sensors", "amount", "blocks")):
 
 
 def clock_faults(session: CalibrationSession) -> tuple[RecordFault, ...]:
-    """Whether the record says when its rows were read."""
+    """Faults in the times of the rows."""
     time = times_of(session)
     if not np.isfinite(session.readings).all():
         return (RecordFault(FaultKind.NOT_FINITE, amount=1 + float(np.argwhere(~np.isfinite(session.readings))[0, 0])),)
@@ -77,7 +77,7 @@ def clock_faults(session: CalibrationSession) -> tuple[RecordFault, ...]:
 
 
 def content_faults(session: CalibrationSession, series: Series, allowed: Array) -> tuple[RecordFault, ...]:
-    """Whether its readings can be those of a resting block; ``allowed`` (m,) drift, m/s² or rad/s."""
+    """Faults in readings that a block at rest cannot have; ``allowed`` (m,) drift, m/s² or rad/s."""
     names = tuple(sensor.name for sensor in session.sensors)
     codes = [np.unique(channel) for channel in at_input(session).T]
     stuck = tuple(name for name, levels in zip(names, codes, strict=True) if len(levels) == 1)
@@ -130,7 +130,7 @@ def _named(session: CalibrationSession, chosen: Array) -> tuple[str, ...]:
 
 
 def is_spatial(session: CalibrationSession) -> bool:
-    """Whether the accelerometers feel all three directions."""
+    """Whether the accelerometers span all three directions."""
     axes = [sensor.nominal_axis for sensor in session.sensors if sensor.kind == ACCELEROMETER]
     return len(axes) >= 3 and int(np.linalg.matrix_rank(np.array(axes), tol=0.05)) == 3
 

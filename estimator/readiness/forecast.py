@@ -1,4 +1,4 @@
-"""How far a course departs from its present value during a programme, drawn from its posterior."""
+"""Draws a course's largest departure from its present value during a programme, from its posterior."""
 
 from dataclasses import dataclass
 
@@ -8,7 +8,7 @@ from estimator.readiness.course import SettlingCourse
 from estimator.session import Array
 
 DRAWS = 2000
-"""Of the posterior: a chance of 5 % is then known to half a per cent."""
+"""Draws of the posterior: a chance of 5 % is then known to half a per cent."""
 STEPS = 12
 """Points of a programme at which the departure is looked at."""
 WAITS = np.concatenate([[0.0], np.geomspace(60.0, 8 * 3600.0, 48)])

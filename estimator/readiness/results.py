@@ -1,4 +1,4 @@
-"""What a record says of readiness."""
+"""Results of a readiness check."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -19,7 +19,7 @@ class ReadinessState(StrEnum):
 
 
 class DisturbanceKind(StrEnum):
-    """What disturbs."""
+    """Kind of disturbance."""
 
     STEP = "step"
     """The reading is another one afterwards."""
@@ -44,9 +44,9 @@ class Disturbance(Document, keys={"start": "start_s", "stop": "stop_s"}):
     stop: float
     """s since the record's first row."""
     size: float
-    """Largest, m/s² or rad/s; of a clipped channel the share of its samples; of a creep rad over the programme."""
+    """Largest value, m/s² or rad/s; share of the samples for a clipped channel; rad over the programme for a creep."""
     passed: bool = False
-    """Whether what came after it is judged without it."""
+    """Whether the part after it is judged without it."""
 
 
 @dataclass(frozen=True)
@@ -58,27 +58,27 @@ class DriftOutlook(
     ),
     keys={"wait": "wait_s", "needed": "needed_s"},
 ):  # fmt: skip
-    """What one sensor, or the thermometer, is still going to do."""
+    """Forecast of the drift of one sensor, or of the thermometer."""
 
     name: str
     kind: str
     expected: float
     """Median of the largest departure from its present value during the programme, m/s² or rad/s (K)."""
     bound: float
-    """That is not passed with 95 % probability, the same unit."""
+    """Departure that is not exceeded with 95 % probability, the same unit."""
     chance: float
-    """That it passes what is allowed."""
+    """Chance that the departure exceeds what is allowed."""
     allowed: float
     """m/s² or rad/s (K)."""
     limit: str
-    """``bias`` or ``scale``: whose tolerance is the nearer one."""
+    """``bias`` or ``scale``: the parameter whose tolerance is the nearer one."""
     wait: tuple[float, float, float] | None
     """s more until the drift to come is allowed, 5 %, 50 % and 95 % quantile; None where it is, or waiting is no
     help."""
     needed: float | None
     """s more of record until it can be judged; None where it can, or no length of it would do."""
     wander: float
-    """One sigma of what its own slow noise does during the programme, m/s² or rad/s (K)."""
+    """One sigma of the sensor's own slow noise over the programme, m/s² or rad/s (K)."""
     bias_share: float | None = None
     """The bound as a share of the tolerance of the bias."""
     scale_share: float | None = None
@@ -105,7 +105,7 @@ class Readiness(
     outlooks: tuple[DriftOutlook, ...]
     disturbances: tuple[Disturbance, ...]
     faults: tuple[RecordFault, ...]
-    """Why no judgement is possible, or what is odd about the record."""
+    """Reasons why no judgement is possible, and oddities of the record."""
     duration: float
     """s of the planned programme."""
     recorded: float
@@ -118,9 +118,9 @@ class Readiness(
     """(n, m) their change since the first of them, m/s² or rad/s, position by position."""
     names: tuple[str, ...]
     temperature: DriftOutlook | None = None
-    """Of the zeros, by the thermometer and the coefficient that was stated; None without either."""
+    """Forecast of the zeros by the thermometer and the stated coefficient; None without either."""
     warmed: float | None = None
-    """K that the thermometer rose over what was judged."""
+    """Rise of the thermometer over the judged part, K."""
 
     @property
     def ready(self) -> bool:
@@ -129,7 +129,9 @@ class Readiness(
 
     @property
     def wait(self) -> tuple[float, float, float] | None:
-        """s more to wait, 5 %, 50 % and 95 %: of whoever needs longest; None where waiting is not the answer."""
+        """Further wait, s, quantiles 5 %, 50 % and 95 %, of the sensor that needs longest; None where waiting is no
+        help.
+        """
         waits = [outlook.wait for outlook in self._judged if outlook.wait is not None]
         return max(waits, key=lambda wait: wait[1]) if waits and self.state is ReadinessState.NOT_WARM else None
 
@@ -141,7 +143,7 @@ class Readiness(
 
     @property
     def worst(self) -> DriftOutlook | None:
-        """Whose drift takes most of what is allowed."""
+        """The sensor whose drift takes most of what is allowed."""
         return max(self._judged, key=lambda outlook: outlook.bound / outlook.allowed, default=None)
 
     @property

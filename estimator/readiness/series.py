@@ -14,7 +14,7 @@ BLOCKS = 100
 SHORTEST = 1.0
 """s of a mean of samples, where the record allows it: shorter ones are noise alone."""
 FULL = 0.5
-"""Of the usual number of samples from which a mean is used; fewer stand beside a gap."""
+"""Least share of the usual number of samples for a mean to be used; fewer stand beside a gap."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +37,7 @@ class Series:
     """(n,) °C."""
 
     def since(self, first: int) -> "Series":
-        """From a mean on."""
+        """The series from a mean on."""
         return Series(
             time=self.time[first:],
             edges=self.edges[first:],

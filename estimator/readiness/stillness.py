@@ -1,4 +1,4 @@
-"""Who or what moved the block: steps, bursts, shaking, clipping.
+"""Disturbances of the block: steps, bursts, shaking, clipping.
 
 Steps are outliers among the differences of neighbouring windows of means, bursts among the variances within means. Both
 are measured in the spread that the record itself shows, by medians, so that slow noise and a warming unit make no
@@ -14,7 +14,7 @@ from estimator.readiness.series import Series
 from estimator.session import Array
 
 FALSE_ALARMS = 0.01
-"""Of a still record, over all that is looked at."""
+"""Chance of a false alarm in a still record, over all that is looked at."""
 WINDOW = 5
 """Means beside a step that are compared: enough that one mean alone is none."""
 AROUND = 3
@@ -27,7 +27,7 @@ curve of a unit that warms up quickly makes no step."""
 SMOOTH = 3
 """Degree of that course."""
 TO_NORMAL = 1.4826
-"""From the median of absolute deviations to a standard deviation."""
+"""Factor from the median of absolute deviations to a standard deviation."""
 CLIPPED = 0.005
 """Share of samples at one end of a channel's range, from which it is clipped, if they come in rows."""
 IN_A_ROW = 4
@@ -58,7 +58,7 @@ def _steps(series: Series, names: tuple[str, ...], allowed: Array) -> list[tuple
 
 
 def _is_sharp(series: Series, names: tuple[str, ...], candidate: tuple[int, Disturbance], allowed: Array) -> bool:
-    """Whether some sensor has a step there that no smooth course through the means around it makes."""
+    """Whether some sensor has a step there that no smooth course through the means around it explains."""
     at = candidate[0] - 1
     rows = slice(max(at - AROUND * WINDOW, 0), at + AROUND * WINDOW)
     t = series.time[rows] - series.time[at]

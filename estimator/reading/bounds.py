@@ -19,7 +19,7 @@ class Bound:
 
     @property
     def row(self) -> str:
-        """As benchmarks/results/bounds.md has it."""
+        """The row of the table in benchmarks/results/bounds.md."""
         least, zero = (self.within.smallest, "yes") if 0 in self.within else (self.within.low, "no")
         ends = f"{self.within.low:g} to {self.within.high:g}"
         return f"| `{self.field}` | {self.within.unit} | {ends} | {least:g} | {zero} | {self.reason} |"

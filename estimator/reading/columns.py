@@ -151,7 +151,7 @@ def as_floats(cells: Column) -> Array | None:
 
 
 def empty(cells: Column) -> Mask:
-    """(R,) which cells state nothing: null, or NaN in an array, which has no null."""
+    """(R,) cells that state nothing: null, or NaN in an array, which has no null."""
     if isinstance(cells, np.ndarray):
         return np.isnan(cells)
     return np.array([cell is None for cell in cells], dtype=bool)

@@ -19,11 +19,11 @@ from estimator.reading.shape import check_extent
 from estimator.wording import counted
 
 SEPARATORS = ",;\t"
-"""Of cells; the one that the header has most of."""
+"""Separators of cells; the most frequent one in the header is taken."""
 BLOCK = 1024 * 1024
 """Characters that are taken apart at a time."""
 ADVICE = "put the session's JSON without its table before the header, each line starting with #"
-"""To whoever gives a table without metadata."""
+"""Advice to somebody who gives a table without metadata."""
 
 
 def parse_csv(text: str, problems: Problems, sidecar: str | None = None) -> dict[str, object]:
@@ -142,7 +142,7 @@ def _cells(texts: list[str]) -> Column:
 
 
 def cell_of(text: str) -> object:
-    """What one text says: a number, the text itself, or None when it is empty."""
+    """The value of one text: a number, the text itself, or None when it is empty."""
     text = text.strip()
     if not text:
         return None

@@ -14,7 +14,7 @@ from estimator.reading.problems import Problems, shown
 UNSTORABLE = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ud800-\udfff]")
 """Control characters and lone surrogates, which databases and XML refuse."""
 NUMBERS = (int, float, np.integer, np.floating)
-"""What counts as a number, bool apart."""
+"""Types that count as numbers, bool apart."""
 LONGEST_NAME = 200
 """Characters: a name stands in headings, file names and indices."""
 LONGEST_NOTE = 100_000
@@ -30,7 +30,7 @@ class Fields:
     problems: Problems
 
     def place(self, key: str) -> str:
-        """Where a key stands, as people write it: ``site.latitude_deg``."""
+        """The place of a key, as people write it: ``site.latitude_deg``."""
         return f"{self.path}.{key}" if self.path else key
 
     def add(self, key: str, message: str, /, **parts: object) -> None:
@@ -108,7 +108,7 @@ class Fields:
 
 
 def number_in(value: object, within: Interval) -> tuple[float | None, str]:
-    """The value as a number of the interval, or None and what is wrong with it."""
+    """The value as a number of the interval, or None with the fault."""
     if isinstance(value, str):
         return None, say(
             "is the text {value}; write a number, without quotes and with a decimal point", value=shown(value)

@@ -1,4 +1,4 @@
-"""The numbers that a field may hold, and what is said of one that it may not."""
+"""The numbers that a field may hold, and messages about others."""
 
 import math
 from dataclasses import dataclass
@@ -27,13 +27,13 @@ class Interval:
         return self.low <= value <= self.high and (value == 0 or abs(value) >= self.smallest)
 
     def held_by(self, values: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """(R,) which of the values it holds; none that is NaN."""
+        """(R,) whether each value lies in the interval; False for NaN."""
         with np.errstate(invalid="ignore"):
             inside: NDArray[np.bool_] = (values >= self.low) & (values <= self.high)
             return inside & ((values == 0) | (np.abs(values) >= self.smallest))
 
     def fault(self, value: float) -> str:
-        """What is wrong with a number that it does not hold, and what to do."""
+        """Describes the fault of a number outside, with a remedy."""
         if isinstance(value, float) and math.isnan(value):
             return "is nan, which is no number; write the number, or leave it out"
         if self.low <= value <= self.high:

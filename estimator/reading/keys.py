@@ -1,4 +1,4 @@
-"""The keys that a session file knows, and which unknown ones are mistakes rather than additions.
+"""The keys of a session file, and the unknown ones that are mistakes rather than additions.
 
 A file may carry keys of its own. One that looks like a known key with another unit, like a slip of the pen, or like a
 known key in the wrong place would change the result in silence if it were ignored: it is a problem.
@@ -13,7 +13,7 @@ from estimator.message import joined, say
 from estimator.reading.fields import Fields
 
 FORMAT = "imu-session/1"
-"""What ``format`` must say; docs/session-file.md describes it."""
+"""Required value of ``format``; docs/session-file.md describes it."""
 TOP = (
     "format", "unit", "unit_type", "block", "programme", "started_at", "powered_on_at", "time_since_power_on_s",
     "operator", "notes", "stage", "origin", "site", "stand", "mounting", "sensors", "table", "count_time_s", "counter",
@@ -41,7 +41,7 @@ UNITS = (
     "c", "k", "f", "celsius", "kelvin", "m", "km", "cm", "mm", "ft", "m_s2", "g", "mg", "ug", "gal", "mgal",
     "hz", "khz", "rad_s", "deg_s", "deg_h", "dps",
 )  # fmt: skip
-"""What people end a key with when they give the value in a unit of their own."""
+"""Endings of keys for values in a unit of the writer's own."""
 UNIT_ENDING = re.compile(r"_(deg|m|s|c|hz|m_s2|rad_s|arcsec)$")
 """The units that known keys end with."""
 UNKNOWN_LOOKED_AT = 200
@@ -62,7 +62,7 @@ def check_keys(fields: Fields, known: tuple[str, ...]) -> None:
 
 
 def meant_key(key: str, known: Iterable[str]) -> str | None:
-    """What to write instead of an unknown key, when it looks like a known one."""
+    """The suggestion for an unknown key that looks like a known one."""
     if len(key) > LONGEST_KEY:
         return None
     plain = key.strip().lower().replace("-", "_").replace(" ", "_")

@@ -39,7 +39,7 @@ class Problems:
     def __init__(self, source: str | None, most: Extent | None = None, where: Where | None = None) -> None:
         self.source = None if source is None else printable(source)
         self.most = most or Extent()
-        """That the file may hold; more is a fault."""
+        """Limits on the size of the file; more is a fault."""
         self.lines_before_table: int | None = None
         """Set for CSV: row r of the table is line r + this of the file."""
         self._where = where

@@ -108,7 +108,7 @@ def _found_rate(columns: Columns, time: Array | None, sensors: tuple[Sensor, ...
 
 
 def _samples(columns: Columns, sensors: tuple[Sensor, ...], *, holes: bool) -> Array:
-    """(R, m) as they stand."""
+    """(R, m) samples as they stand."""
     names, within = [sensor.name for sensor in sensors], WITHIN["<sensor>"]
     read = columns.samples if holes else columns.numbers
     for name in (name for name in names if not columns.has(name)):

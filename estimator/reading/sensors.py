@@ -11,13 +11,13 @@ from estimator.reading.problems import Problems, shown
 from estimator.session import ACCELEROMETER, GYROSCOPE, TWO_AXIS_STAND, Array, Sensor
 
 KINDS = (ACCELEROMETER, GYROSCOPE)
-"""Of sensors and blocks."""
+"""Kinds of sensors and of blocks."""
 FEWEST = 3
-"""Of a kind: fewer cannot measure a vector."""
+"""Fewest sensors of a kind: fewer cannot measure a vector."""
 MOST = 1000
 """The joint covariance has 25 elements for every two sensors; no block comes near."""
 LENGTH_TOLERANCE = 1e-3
-"""Of an axis written with three digits; the axis is then scaled to one."""
+"""Tolerance on the length of an axis written with three digits; the axis is then scaled to one."""
 FLATTEST = 0.01
 """Smallest ratio of the axes' singular values; below it they lie in one plane, to half a degree."""
 REPEATABILITY = {ACCELEROMETER: "bias_repeatability_m_s2", GYROSCOPE: "bias_repeatability_rad_s"}

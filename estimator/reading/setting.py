@@ -1,4 +1,4 @@
-"""Where and how a session was measured: site, stand, mounting, date. Degrees and arcseconds become radians here."""
+"""Circumstances of a session: site, stand, mounting, date. Degrees and arcseconds become radians here."""
 
 import math
 from dataclasses import replace
@@ -31,7 +31,7 @@ ARCSEC = math.pi / 648_000
 FLATTEST = 0.01
 """Degrees by which the head's axis must stay clear of 0° and 90°, where bias and scale become inseparable."""
 ROTATION_TOLERANCE = 1e-6
-"""Of the products of rows that should be 0 or 1: a mounting written with seven digits, known to 0.2″."""
+"""Tolerance on products of rows that should be 0 or 1: a mounting written with seven digits, known to 0.2″."""
 YEARS = Interval(1950, 2200)
 """Strapdown systems are younger; later is a slip."""
 POWERED_ON, SINCE_POWER_ON = "powered_on_at", "time_since_power_on_s"

@@ -1,4 +1,4 @@
-"""Where a session comes from: a path, a dict, or bytes whose content says whether they are JSON or CSV."""
+"""Sources of a session: a path, a dict, or bytes whose content tells JSON from CSV."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -12,7 +12,7 @@ LARGEST_FILE = 256 * 1024 * 1024
 
 
 def display_name(source: object) -> str | None:
-    """What messages call a source: its path; None for a dict or bytes."""
+    """Name of a source in messages: its path; None for a dict or bytes."""
     return str(source)[:200] if isinstance(source, str | Path) else None
 
 
@@ -42,7 +42,7 @@ def _load_path(source: str | Path, problems: Problems) -> dict[str, object]:
 
 
 def _parse(text: str, problems: Problems, sidecar: str | None) -> dict[str, object]:
-    """By content: JSON starts with a brace (or a bracket), CSV with # lines, or with a header and a sidecar."""
+    """Parses by content: JSON starts with a brace (or a bracket), CSV with # lines, or with a header and a sidecar."""
     start = text.lstrip()[:1]
     if not start:
         raise problems.fail("file", "is empty")

@@ -18,9 +18,9 @@ from estimator.screening import Screen, Screening
 from estimator.session import RATE_TABLE, ROTATION_ALIGNMENT, THERMAL, TWO_AXIS_STAND, Array, Sensor
 
 RUNS = ("direct", "flipped")
-"""What the column ``run`` may say."""
+"""Values of the column ``run``."""
 OF_MEANS = "standard errors belong to averaged readings; remove them from a raw log"
-"""What is wrong with them elsewhere."""
+"""Message about standard errors in a raw log."""
 SHORTEST_DIRECTION = 1e-3
 """Length, in whatever unit the components are written: shorter is a zero that was rounded."""
 

@@ -21,7 +21,7 @@ RANGES = np.array(
 )
 """s after which clocks begin anew: words of ticks of ns, µs, ms and s."""
 CLOSE = 0.5
-"""Of a step: how near the fall comes to the range less a step."""
+"""Largest difference, in steps, between the fall and the range less a step."""
 FINE = 50.0
 """Steps that a range holds at least: fewer, and any fall is near one."""
 UNITS = (1e3, 1e6, 1e9)
@@ -75,7 +75,7 @@ class Clock:
         return time, found
 
     def _unit(self, time: Array) -> tuple[float, list[Sighting]]:
-        """How many times too fast the clock runs, by the stated rate."""
+        """The factor by which the clock runs too fast, by the stated rate, and the finding of it."""
         step = usual_step(time)
         assert self.rate is not None
         if step == 0:
@@ -91,7 +91,7 @@ class Clock:
         return 1.0, []
 
     def _rolled(self, time: Array, at: int) -> tuple[Array, list[Sighting]]:
-        """With every fall mended that tells its range; the others are faults."""
+        """Mends every fall that reveals its range; the others are faults."""
         begin = np.append(self._last, time)
         steps = np.diff(begin)
         fallen = np.flatnonzero(steps < 0)
@@ -150,7 +150,7 @@ class Clock:
 
     @property
     def stands(self) -> bool:
-        """Whether no time differed from the one before."""
+        """Whether every time equalled the one before."""
         return not self._advanced
 
 

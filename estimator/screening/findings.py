@@ -9,7 +9,7 @@ from estimator.message import joined, say, say_count
 from estimator.session import CORRECTED_SAMPLES, LEFT_OUT, NOTED, ScreenFinding
 
 Screening = tuple[ScreenFinding, ...]
-"""Everything that was found in one file."""
+"""All findings in one file."""
 
 OFF = "off"
 """The word that declines all kinds."""
@@ -67,10 +67,10 @@ class Sighting:
     first: int
     last: int
     value: float | None = None
-    """What the readings or the clock show; None where nothing is to be said of it."""
+    """Value found in the readings or the clock; None where there is none to report."""
 
     def beside(self, other: "Sighting") -> "Sighting":
-        """With the same thing of another part of the file."""
+        """The sighting merged with the same one in another part of the file."""
         value = max((v for v in (self.value, other.value) if v is not None), default=None)
         both = tuple(dict.fromkeys((*self.sensors, *other.sensors)))
         return Sighting(
@@ -79,7 +79,7 @@ class Sighting:
 
     @property
     def finding(self) -> ScreenFinding:
-        """For people."""
+        """The finding, for people."""
         first, last = self.first + 1, self.last + 1
         parts = {
             "rows": _rows(self.rows, first, last),
@@ -110,7 +110,7 @@ def seen(kind: str, sensors: Iterable[str], rows: np.ndarray, at: int, value: fl
 
 
 def together(found: Iterable[Sighting]) -> tuple[ScreenFinding, ...]:
-    """Findings of one kind and value as one, sensors that share their rows too."""
+    """Merges findings of one kind and value, and joins sensors that share their rows."""
     sums: dict[tuple[str, tuple[str, ...], float | None], Sighting] = {}
     for item in found:
         key = (item.kind, item.sensors, item.value if item.kind in ("no-data", "saturated") else None)

@@ -29,7 +29,7 @@ def without_stray(session: CalibrationSession, start: NDArray[np.intp], stop: ND
 
 
 def stray(sensors: tuple[Sensor, ...], wild: NDArray[np.bool_], at: int) -> list[Sighting]:
-    """What was ``wild`` (r, m) in the rows from ``at`` on."""
+    """The sightings of ``wild`` samples (r, m) in the rows from ``at`` on."""
     channels = np.flatnonzero(wild.any(axis=0))
     return [item for i in channels for item in seen("wild", (sensors[i].name,), np.flatnonzero(wild[:, i]), at)]
 

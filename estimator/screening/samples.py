@@ -14,13 +14,13 @@ Mask = NDArray[np.bool_]
 Rows = NDArray[np.intp]
 
 BITS = (8, 16, 24, 32)
-"""Of words in which sensors write their readings."""
+"""Bits of the words in which sensors write their readings."""
 MARKERS = np.array(
     [sign * (2.0**bits - less) for bits in (7, 15, 23, 31) for sign, less in ((-1, 0), (1, 1))]
     + [2.0**bits - 1 for bits in (16, 24, 32)]
     + [sign * value for value in (999, 9999, 99999, 999999, 999.9, 9999.9, 999.99) for sign in (-1.0, 1.0)]
 )
-"""That sources write for no data: the ends of a word, and rows of nines. Zero is judged by whole vectors."""
+"""Values that sources write for no data: the ends of a word, and rows of nines. Zero is judged by whole vectors."""
 LARGEST = 1e20
 """Reading beyond the counts of any instrument (`reading.bounds`): 1e30 and its like stand for none."""
 APART = 10.0
@@ -40,7 +40,7 @@ three coarse channels unchanged in two of three changes of the vector)."""
 OFTEN = 0.2
 """Share of repeated vectors from which a logger is faster than its sensor: it takes every reading more than once."""
 ON_STEP = 0.05
-"""Of a step: mean distance of readings from the multiples of it; of readings in no steps it is a quarter."""
+"""Largest mean distance of readings from multiples of a step, as a part of it; a quarter for readings without steps."""
 LOOKED_AT = 4096
 """Samples, evenly chosen, from which a typical step is taken: known to 2 %."""
 
@@ -234,12 +234,12 @@ def repeated(x: Array) -> Mask:
 
 
 def share_of_equal(x: Array) -> float:
-    """Of the neighbours in x (R,)."""
+    """Share of equal neighbours in x (R,)."""
     return float(np.count_nonzero(x[1:] == x[:-1])) / max(len(x) - 1, 1)
 
 
 def at_end(x: Array, value: float) -> Mask:
-    """(R,) where finite x (R,) stands at an extreme ``value`` that it runs into again and again."""
+    """(R,) bool: finite x (R,) stands at an extreme ``value`` that it runs into again and again."""
     stood = x == value
     edge = np.flatnonzero(stood[1:] != stood[:-1])
     beside = np.abs(x[np.where(stood[edge], edge + 1, edge)] - value)

@@ -58,7 +58,7 @@ class Screen:
         return kind not in self._declined
 
     def note_rate(self, rate: float, rows: int) -> None:
-        """Notes that the times say it, Hz, and not the file."""
+        """Notes that the rate, Hz, comes from the times and not from the file."""
         self.found += seen("rate", (), np.arange(rows), 0, rate)
 
     def times(self, time: Array, moved: Array, fault: Fault) -> Array:
@@ -72,7 +72,7 @@ class Screen:
 
     @property
     def clock_stands(self) -> bool:
-        """Whether the times never advance, and are to be left out; a finding then."""
+        """Whether the times never advance and are to be left out, which is then noted as a finding."""
         stands = self._clock is not None and self._clock.stands and self._timed > 1 and self.looks_for("no-clock")
         if stands:
             self.found += seen("no-clock", (), np.arange(self._timed), 0)
@@ -169,7 +169,7 @@ class Screen:
 
     @property
     def findings(self) -> Screening:
-        """Of all rows so far."""
+        """Findings of all rows so far."""
         return together(self.found)
 
 

@@ -56,7 +56,7 @@ def _of_block(rest: Array) -> NDArray[np.bool_] | None:
 
 
 def _stray(x: Array) -> NDArray[np.bool_]:
-    """(n,) of one channel x (n,)."""
+    """(n,) whether each reading of one channel x (n,) is wild."""
     rows = np.flatnonzero(np.isfinite(x))
     if len(rows) < FEWEST:
         return np.zeros(len(x), dtype=bool)

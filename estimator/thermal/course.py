@@ -18,7 +18,7 @@ from estimator.session import Array, CalibrationSession
 REFERENCE = 20.0
 """°C, the reference temperature of measurement (ISO 1), where the session covers it; else the middle of its range."""
 HIGHEST_ORDER = 4
-"""Of a polynomial: IEEE Std 1293 and 952 are content with three or four."""
+"""Highest order of a polynomial: IEEE Std 1293 and 952 are content with three or four."""
 APART = 2.0
 """°C between two levels of temperature: a chamber holds a soak closer than that."""
 NARROWEST = 10.0
@@ -63,7 +63,7 @@ class TemperatureCourse:
         return int(np.clip(self.levels - 2, 1, HIGHEST_ORDER))
 
     def x(self, temperature: Array) -> Array:
-        """(n,) from −1 to 1 over the range, of temperatures (n,), °C."""
+        """(n,) temperatures scaled to −1 … 1 over the range, from temperatures (n,), °C."""
         return (2 * temperature - self.highest - self.lowest) / (self.highest - self.lowest)
 
     def basis(self, order: int) -> Array:
@@ -71,7 +71,7 @@ class TemperatureCourse:
         return np.asarray(legvander(self.x(self.temperature), order))
 
     def to_powers(self, order: int) -> Array:
-        """(order + 1, order + 1) from Legendre coefficients to those of (T − T₀)^k, K^−k."""
+        """(order + 1, order + 1) transformation of Legendre coefficients to those of (T − T₀)^k, K^−k."""
         x0 = float(self.x(np.array(self.reference)))
         inner = Polynomial([x0, 2 / (self.highest - self.lowest)])
         change = np.zeros((order + 1, order + 1))

@@ -34,7 +34,7 @@ TURNS = 2
 
 @dataclass(frozen=True, eq=False)
 class ThermalRows:
-    """What was measured, dimensionless (of gyros rad/s)."""
+    """The measurements, dimensionless (rad/s for gyros)."""
 
     y: Array
     """(R, m)"""
@@ -80,7 +80,7 @@ class State:
 
     @property
     def vector(self) -> Array:
-        """(m, p) of all elements but the turns, which are counted from here."""
+        """(m, p) vector of all elements but the turns, which are counted from here."""
         return np.column_stack([self.scale, self.bias, self.quadratic, np.zeros((len(self.axes), 2))])
 
     def stepped(self, step: Array, settings: Array) -> "State":
@@ -98,7 +98,7 @@ class State:
         )
 
     def held(self, rows: ThermalRows) -> "State":
-        """With the accelerometers' frame turned so that it shows no net turn against the nominal axes."""
+        """The state with the accelerometers' frame turned so that it shows no net turn against the nominal axes."""
         live = ~rows.gyro
         if rows.prior.any() or not live.any():
             return self
@@ -116,9 +116,9 @@ class ThermalEquations:
     local: Array
     """(R, m, p) derivative by the sensor's own elements."""
     shared: Array
-    """(R, m, 5) by the setting's."""
+    """(R, m, 5) derivative by the setting's elements."""
     inverse: Array
-    """(G, 5, 5) of the settings' own information."""
+    """(G, 5, 5) inverse of the settings' own information."""
     coupling: Array
     """(G, P, 5)"""
     setting_gradient: Array

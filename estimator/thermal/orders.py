@@ -23,7 +23,7 @@ class Orders:
     """The choice for m sensors; p elements a sensor."""
 
     order: Array
-    """(m, 2) of scale factor and bias."""
+    """(m, 2) orders of scale factor and bias."""
     free: Array
     """(m, p) bool, elements that remain."""
     spread: Array
@@ -69,7 +69,7 @@ def model(theta: Array, C: Array, pair: tuple[int, int], highest: tuple[int, int
 
 
 def unsaid(models: list[OrderChoice], best: OrderChoice) -> Array:
-    """(p, p) what the covariance of the best model leaves out of the others'."""
+    """(p, p) covariance that the choice among the models adds to that of the best one."""
     weights = np.exp(-0.5 * np.array([choice.bic - best.bic for choice in models]))
     total = np.zeros_like(best.covariance)
     for weight, choice in zip(weights / weights.sum(), models, strict=True):

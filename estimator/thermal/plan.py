@@ -1,4 +1,4 @@
-"""What a thermal session would tell, before it is measured: curves of highest order with their bands.
+"""Predicts the result of a thermal session before it is measured: curves of highest order with their bands.
 
 The bands follow from the schedule and the noise; the readings, here simulated, hardly matter.
 """

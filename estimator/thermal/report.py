@@ -21,11 +21,11 @@ from estimator.thermal.solve import ThermalFit
 from estimator.thermal.structure import LEVEL, MisfitForm, Misfits, misfits, places
 
 METHOD = "thermal/maximum-likelihood"
-"""As results name it."""
+"""Name of the method in results."""
 
 
 def ratio_of(solved: ThermalFit, *, stated: bool) -> float:
-    """By how much the covariance grows because the stated noise does not explain the residuals."""
+    """Factor by which the covariance grows because the stated noise does not explain the residuals."""
     doubted = stated and solved.dof > 0 and p_value(solved.chi2, solved.dof) < UNLIKELY
     return solved.chi2 / solved.dof if doubted else 1.0
 
@@ -53,7 +53,7 @@ def result(begun: Begun, solved: ThermalFit, orders: Orders, forms: tuple[Misfit
 
 
 def fit_of(begun: Begun, solved: ThermalFit, known: Knowledge, ratio: float) -> Fit:
-    """How well the curves fit."""
+    """Quality of fit of the curves."""
     sigma = np.sqrt(
         np.diagonal(known.covariance) / np.nan_to_num(known.parameters.si_factors(begun.unit), nan=1.0) ** 2
     )
@@ -145,7 +145,7 @@ def curves_of(
 def findings(
     begun: Begun, solved: ThermalFit, covariance: Array, forms: tuple[MisfitForm, ...], missed: Misfits
 ) -> list[ThermalFinding]:
-    """What the readings show beside the curves, SI."""
+    """Effects that the readings show beside the curves, SI."""
     q, p = begun.order + 1, solved.free.shape[1]
     found = []
     for i, place in enumerate(begun.at):

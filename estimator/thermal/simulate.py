@@ -23,7 +23,7 @@ UNSTEADY = 0.2
 
 @dataclass(frozen=True, eq=False)
 class ThermalLaw:
-    """What temperature does to m sensors; column k of (K⁻¹, K⁻², …)."""
+    """Effect of temperature on m sensors; column k of (K⁻¹, K⁻², …)."""
 
     scale: Array
     """(m, n) relative."""
@@ -51,7 +51,7 @@ def thermal_schedule(
 
 
 def usual_law(sensors: tuple[Sensor, ...], rng: np.random.Generator) -> ThermalLaw:
-    """Of good instruments: over 50 °C 1 mg and 0.5 mg bent, 0.2 % and 0.05 % bent; gyros 0.02 and 0.01 °/s."""
+    """Law of good instruments: over 50 °C 1 mg and 0.5 mg bent, 0.2 % and 0.05 % bent; gyros 0.02 and 0.01 °/s."""
     accelerometer = np.array([s.kind == ACCELEROMETER for s in sensors])[:, None]
     span = np.array([50.0, 50.0**2])
     bias = np.where(accelerometer, [1e-2, 5e-3], [3.5e-4, 1.7e-4]) / span

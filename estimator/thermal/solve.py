@@ -15,9 +15,9 @@ from estimator.session import Array
 from estimator.thermal.model import State, ThermalEquations, ThermalRows, cost, linearise
 
 MOST_ROUNDS = 40
-"""Of a search, and of searches while the noise settles; five are usual."""
+"""Most rounds of a search, and most searches while the noise settles; five are usual."""
 HALVINGS = 12
-"""Of a step, before the search counts as ended."""
+"""Most halvings of a step, before the search counts as ended."""
 CONVERGED = 1e-6
 """Expected fall of χ² below which the search has ended: a thousandth of a standard error."""
 SETTLED = 1e-3
@@ -26,10 +26,10 @@ SETTLED = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class ThermalFit:
-    """Where a search ended. P = m·p elements."""
+    """The end of a search. P = m·p elements."""
 
     rows: ThermalRows
-    """With the noise that was used."""
+    """The rows, with the noise that was used."""
     state: State
     free: Array
     """(m, p) bool, elements that were estimated."""

@@ -1,4 +1,4 @@
-"""What the readings show beside polynomials of temperature: a hysteresis loop, a lag, a misfit.
+"""Effects that readings show beside polynomials of temperature: a hysteresis loop, a lag, a misfit.
 
 A loop adds h·leg·(1 − x²)/2 to a sensor's bias, a lag k·(L − T) with τ·dL/dt = T − L, one τ for the block, whose mass
 it is, and one k a sensor. With the score u and the information F of a form's amplitudes in all sensors, given all that
@@ -30,7 +30,7 @@ DOUBTED = 0.05
 SEPARATED = 9.0
 """Difference of χ² below which two forms explain the same readings: three standard errors."""
 BINS = 10
-"""Over the range of temperature: twice the coefficients of the highest order."""
+"""Bins over the range of temperature: twice the coefficients of the highest order."""
 FLAT = 1e-6
 """Relative eigenvalue below which bins tell nothing of their own."""
 
@@ -44,9 +44,9 @@ class MisfitForm:
     """(R,) dimensionless of a loop, K of a lag."""
     time_constant: float | None
     gain: float
-    """By which it raises the fit, in the noise."""
+    """Gain of the fit, relative to the noise."""
     p_value: float
-    """Of that, over all forms tried."""
+    """p-value of the gain, over all forms tried."""
     sensor_p_values: Array
     """(m,) p-value of each sensor's amplitude, over all sensors."""
     alternatives: tuple[str, ...] = ()
@@ -129,16 +129,16 @@ def with_forms(
 
 @dataclass(frozen=True, eq=False)
 class Misfits:
-    """What the curves of m sensors miss: of scale factor and bias."""
+    """Misfit of the curves of m sensors: for scale factor and bias."""
 
     sigma: Array
     """(m, 2) dimensionless (of a gyro's bias rad/s); zero where noise explains it."""
     p_value: Array
-    """(m, 2) over all curves."""
+    """(m, 2) p-values over all curves."""
 
 
 def misfits(solved: ThermalFit, course: TemperatureCourse, *, stated: bool) -> Misfits:
-    """What is left over bins of temperature."""
+    """Misfits of the curves, from the residuals over bins of temperature."""
     linear, at, old = binned(solved, course)
     size, known, score = amplitudes(linear, at.ravel(), old, solved.covariance)
     count = int((np.diagonal(known) > 0).sum())

@@ -15,7 +15,7 @@ TABLES = (
     "unit_types", "tolerance_revisions", "units", "stands", "services", "sessions", "calibrations", "parameters",
     "decisions", "conditions", "refusals", "audit",
 )  # fmt: skip
-"""In the order in which they can be made."""
+"""Tables in the order in which they can be made."""
 
 
 def upgrade() -> None:

@@ -21,11 +21,11 @@ KEYS = {
 }
 """Primary keys, with the revision that is new in them."""
 VERDICT = ("verdict", "reason", "worst_sensor", "worst_parameter", "margin")
-"""What a calibration led to; until now only the session said it."""
+"""Columns of the verdict that a calibration led to; until now only the session stored it."""
 
 
 def upgrade() -> None:
-    """Everything that is stored was computed under the baseline model, which is revision 0."""
+    """Adds the revision of the model to everything stored, which was computed under the baseline model: revision 0."""
     for table in ("sessions", *KEYS):
         op.add_column(table, sa.Column("revision", sa.Integer(), nullable=False, server_default="0"))
     for table, key in KEYS.items():

@@ -1,4 +1,4 @@
-"""What all sensors do together, what is left of each, outlooks, production lots and the longest interval of a type.
+"""Common motion of all sensors, residuals of each, outlooks, production lots and the longest interval of a type.
 
 Revision: 0003, after 0002
 """
@@ -37,7 +37,7 @@ def upgrade() -> None:
 
 
 def downgrade() -> None:
-    """Verdicts stay; what they were split into goes."""
+    """Verdicts stay; the parts they were split into go."""
     op.drop_table("outlooks")
     op.drop_table("common_motions")
     op.drop_column("unit_types", "maximum_interval_days")

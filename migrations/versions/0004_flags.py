@@ -1,4 +1,4 @@
-"""Who did a service and on which sensor, notes, stages of sessions, flags with their notices, webhooks with an outbox.
+"""Person and sensor of a service, notes, stages of sessions, flags with their notices, webhooks with an outbox.
 
 Revision: 0004, after 0003
 """
@@ -18,7 +18,7 @@ APPEND_ONLY = ("notes", "note_withdrawals", "notices")
 
 
 def upgrade() -> None:
-    """Nothing is flagged until the next session of a unit."""
+    """Adds flags; none is open until the next session of a unit."""
     op.add_column("sessions", sa.Column("stage", sa.String(20)))
     op.add_column("conditions", sa.Column("flags", sa.Integer(), nullable=False, server_default="0"))
     _services()
@@ -31,7 +31,7 @@ def upgrade() -> None:
 
 
 def downgrade() -> None:
-    """Of several services of one kind at one moment on several sensors the first one stays."""
+    """The first service stays where several were of one kind at one moment on several sensors."""
     for table in ("deliveries", "webhooks", "notices", "flags", "note_withdrawals", "notes"):
         op.drop_table(table)
     if op.get_bind().dialect.name == "postgresql":

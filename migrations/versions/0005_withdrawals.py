@@ -13,12 +13,12 @@ depends_on = None
 
 
 def upgrade() -> None:
-    """Nothing is withdrawn yet."""
+    """Adds the column of withdrawals; nothing is withdrawn yet."""
     op.add_column("model_revisions", sa.Column("withdraws", sa.Integer(), nullable=True))
 
 
 def downgrade() -> None:
-    """Without the column a withdrawal would read as an acceptance: it goes."""
+    """Deletes withdrawals, which would read as acceptances without the column."""
     op.execute(sa.text("DELETE FROM model_revisions WHERE withdraws IS NOT NULL"))
     with op.batch_alter_table("model_revisions") as table:
         table.drop_column("withdraws")

@@ -1,4 +1,4 @@
-"""What a unit's page draws of its outlook stands beside what the fleet page reads.
+"""The drawing data of a unit's outlook get a column of their own, apart from the data of the fleet page.
 
 Revision: 0006, after 0005
 """
@@ -19,6 +19,6 @@ def upgrade() -> None:
 
 
 def downgrade() -> None:
-    """The same."""
+    """Outlooks are summaries: each is worked out again with the unit's next session."""
     op.execute("DELETE FROM outlooks")
     op.drop_column("outlooks", "drawn")

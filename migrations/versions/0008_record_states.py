@@ -37,7 +37,7 @@ def upgrade() -> None:
 
 
 def downgrade() -> None:
-    """Without states every stored record counts again."""
+    """Drops the states; every stored record counts again."""
     for name in APPEND_ONLY:
         op.drop_table(name)
     op.drop_column("diagnoses", "tells")

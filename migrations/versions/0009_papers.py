@@ -1,4 +1,4 @@
-"""What papers name: the customer of a unit, the certificates of stands, and the numbers of certificates issued.
+"""Names on certificates: the customer of a unit, the certificates of stands, and the numbers of those issued.
 
 Revision: 0009, after 0008
 """

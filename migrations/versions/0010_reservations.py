@@ -1,4 +1,4 @@
-"""What a verdict is said with stands beside the diagnosis that it comes from.
+"""Reservations about a verdict are stored with the diagnosis that they come from.
 
 Revision: 0010, after 0009
 """
@@ -22,5 +22,5 @@ def upgrade() -> None:
 
 
 def downgrade() -> None:
-    """Without it."""
+    """Drops the reservations."""
     op.drop_column("diagnoses", "reservations")

@@ -1,4 +1,4 @@
-"""What each unit's histories tell of its type, and at what temperature a session was measured.
+"""Each unit's contribution to the knowledge of its type, and the temperature at which a session was measured.
 
 Revision: 0011, after 0010
 """
@@ -28,7 +28,7 @@ def upgrade() -> None:
 
 
 def downgrade() -> None:
-    """The same, without what was learned."""
+    """Outlooks are worked out again; the knowledge that was learned is dropped."""
     op.execute("DELETE FROM outlooks")
     op.drop_table("histories")
     op.drop_column("sessions", "temperature")

@@ -22,7 +22,7 @@ AUDIT = sa.table(
     sa.column("details", sa.JSON()),
 )
 FIRST = "0" * 64
-"""Before the first line."""
+"""Hash before the first line."""
 
 
 def upgrade() -> None:
@@ -94,7 +94,9 @@ def _moment() -> sa.DateTime:
 
 
 def _chain() -> None:
-    """As `service.storage.audit` does, written out: a migration must not change when the program does."""
+    """Chains the lines as `service.storage.audit` does, written out: a migration must not change when the program
+    does.
+    """
     connection, last = op.get_bind(), FIRST
     for row in connection.execute(sa.select(AUDIT).order_by(AUDIT.c.id)).all():
         at = row.at.replace(tzinfo=UTC) if row.at.tzinfo is None else row.at.astimezone(UTC)

@@ -17,7 +17,7 @@ APPEND_ONLY = ("certificate_signatures", "certificate_files")
 
 
 def upgrade() -> None:
-    """Nothing is signed yet, and nobody has tried."""
+    """Adds tables of signatures, signed files and attempts; all are empty."""
     _of_certificates("certificate_signatures", "meaning", *_signature())
     _of_certificates("certificate_files", "format", *_file())
     for table in APPEND_ONLY:

@@ -1,4 +1,4 @@
-"""How tables of people's own layout are read.
+"""Adds the remembered layouts of people's own tables.
 
 Revision: 0015, after 0014
 """
@@ -13,7 +13,7 @@ depends_on = None
 
 
 def upgrade() -> None:
-    """Nothing is remembered yet."""
+    """Adds the table of layouts, which is empty."""
     op.create_table(
         "layouts",
         sa.Column("id", sa.Integer(), nullable=False),

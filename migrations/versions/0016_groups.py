@@ -1,4 +1,4 @@
-"""What sessions tell of their groups, and what groups show.
+"""Statistics of sessions for their groups, and the diagnoses of groups.
 
 Revision: 0016, after 0015
 """

@@ -41,7 +41,7 @@ def upgrade() -> None:
 
 
 def downgrade() -> None:
-    """What moved is in the audit too."""
+    """The changes that recomputation made stay in the audit."""
     op.drop_column("pending_outlooks", "attempts")
     op.drop_column("pending_groups", "attempts")
     op.drop_column("group_diagnoses", "own")

@@ -18,7 +18,7 @@ MILLISECONDS = {
     "sqlite": "(CAST(strftime('%s', substr({0}, 1, 19)) AS INTEGER) * 1000 + CAST(substr({0}, 21, 3) AS INTEGER))",
     "postgresql": "CAST(floor(extract(epoch FROM {0}) * 1000) AS BIGINT)",
 }
-"""Of a time since the start of 1970, whole; SQLite keeps times as text, UTC: 2026-03-01 09:00:00.000000."""
+"""Milliseconds since the start of 1970, whole; SQLite keeps times as text, UTC: 2026-03-01 09:00:00.000000."""
 UNITS = """
 SELECT u.serial AS unit, t.name AS unit_type, u.lot AS lot, u.simulated AS simulated,
     COALESCE(c.sessions, 0) AS sessions, s.id AS last_session, st.name AS stand,

@@ -1,4 +1,4 @@
-"""What is known of the fleet as a whole in tables of its own: counts, how the units of types drift, how stands stand.
+"""Facts about the fleet as a whole in tables of their own: counts, drifts of the units of types, states of stands.
 
 Counts are worked out here from what is stored. What types and stands show is asked for, and made by the service beside
 its first requests. The views of 0018 read `outlooks` and `sessions`; columns are added to these, and no table is made
@@ -102,7 +102,7 @@ def _outlooks() -> None:
 
 
 def _text(sentence: str | dict[str, Any]) -> str:
-    """In English, where a later version that had been here before keeps a sentence with its parts."""
+    """The sentence in English; a later version that was here before may have kept it with its parts."""
     if isinstance(sentence, str):
         return sentence
     parts = {name: _text(part) for name, part in sentence.get("parts", {}).items()}
@@ -111,7 +111,7 @@ def _text(sentence: str | dict[str, Any]) -> str:
 
 
 def _conditions() -> None:
-    """Where and when a unit was measured last, so that units of a stand are found without their sessions."""
+    """Time and place of a unit's latest session, so that units of a stand are found without their sessions."""
     op.add_column("conditions", sa.Column("last_at", sa.DateTime(timezone=True), nullable=True))
     op.add_column("conditions", sa.Column("stand_id", sa.Integer(), nullable=True))
     op.execute(LAST)
@@ -204,7 +204,7 @@ def _summaries() -> None:
 
 
 def downgrade() -> None:
-    """Nothing is lost that cannot be worked out again."""
+    """Drops the tables of the fleet, which can be worked out again."""
     for table in ("pending_summaries", "stand_conditions", "populations", "stand_tallies", "stand_units",
                   "fleet_tallies", "tallied"):  # fmt: skip
         op.drop_table(table)

@@ -1,4 +1,4 @@
-"""Who looks after a flag, and views of lists that people keep.
+"""Assignees of flags, and views of lists that people keep.
 
 Revision: 0021, after 0019
 """
@@ -31,7 +31,7 @@ def upgrade() -> None:
 
 
 def downgrade() -> None:
-    """Who looked after a flag stays in its life."""
+    """Former assignees of a flag stay in its life."""
     op.drop_table("saved_views")
     op.drop_column("flags", "assignee_login")
     op.drop_column("flags", "assignee")

@@ -13,7 +13,7 @@ depends_on = None
 
 
 def upgrade() -> None:
-    """Nothing is attached yet, and no session is a check."""
+    """Adds attachments and checks; nothing is attached yet, and no session is a check."""
     op.add_column("notes", sa.Column("session_id", sa.String(20), nullable=True))
     op.create_index("ix_notes_session_id", "notes", ["session_id"])
     op.add_column("sessions", sa.Column("is_check", sa.Boolean(), nullable=False, server_default=sa.false()))

@@ -55,5 +55,5 @@ def upgrade() -> None:
 
 
 def downgrade() -> None:
-    """What was not done yet is forgotten; what was done stays done."""
+    """Unfinished jobs are forgotten; the results of finished ones stay."""
     op.drop_table("jobs")

@@ -1,4 +1,4 @@
-"""Whose a flag is: of a unit, of its type or of a stand.
+"""Gives every flag its subject: a unit, a type or a stand.
 
 What the sessions of a type or on a stand show together hung on the unit that was measured last; it says now whose it
 is, and counts as a flag of no unit.

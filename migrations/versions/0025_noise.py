@@ -1,4 +1,4 @@
-"""What the rests of a session say of its sensors' noise: the curve, beside the terms, which are parameters.
+"""Noise of a session's sensors from its rests: the curve, beside the terms, which are parameters.
 
 Revision: 0025, after 0024
 """
@@ -27,6 +27,6 @@ def upgrade() -> None:
 
 
 def downgrade() -> None:
-    """Nothing before knows the terms."""
+    """Drops the noise terms, which earlier releases do not know."""
     op.drop_table("session_noise")
     op.execute(sa.delete(PARAMETERS).where(PARAMETERS.c.parameter.in_(TERMS)))

@@ -1,4 +1,4 @@
-"""What would put a questioned session right is kept with the line of its life that questions it.
+"""Remedies for a questioned session are kept with the line of its life that questions it.
 
 Its page read the file and the unit's reference anew each time. Lines from before keep none, and their pages still do.
 

@@ -15,7 +15,7 @@ depends_on = None
 
 TABLES = ("sessions", "refusals", "attachments", "jobs")
 LARGEST = 2**31 - 1
-"""That 32 bits hold."""
+"""Largest number that 32 bits hold."""
 
 
 def upgrade() -> None:

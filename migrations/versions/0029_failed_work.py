@@ -18,7 +18,7 @@ KEPT_FAILED = ("diagnoses", "deliveries", "jobs")
 
 
 def upgrade() -> None:
-    """Nothing has said so yet."""
+    """Adds the reasons of failures; none is recorded yet."""
     for table in QUEUES:
         op.add_column(table, sa.Column("failed", sa.Text(), nullable=True))
     op.create_table(
@@ -34,7 +34,7 @@ def upgrade() -> None:
 
 
 def downgrade() -> None:
-    """Why is in the log too."""
+    """Drops the reasons of failures, which are in the log too."""
     for table in KEPT_FAILED:
         op.drop_index(f"ix_{table}_failed", table)
     op.drop_table("failed_derivations")

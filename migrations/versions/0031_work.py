@@ -1,4 +1,4 @@
-"""What is still to be done beside the requests waits in one table: diagnoses, outlooks, groups and summaries.
+"""Outstanding work beside the requests waits in one table: diagnoses, outlooks, groups and summaries.
 
 The view `health_units` reads it. Nobody is at any of it while the schema changes, so no lease is carried over.
 
@@ -16,7 +16,7 @@ depends_on = None
 SINGLE = "kind NOT IN ('group', 'summary')"
 COLUMNS = "kind, key, asked_at, ticket, state, not_before, attempts, failed"
 GIVEN_UP = "CASE WHEN p.claimed_until > '9000-01-01' THEN 'failed' ELSE 'waiting' END"
-"""Of older rows: nobody was to begin them."""
+"""State of older rows: those that nobody was to begin have failed."""
 CARRIED = (
     "SELECT 'diagnosis', p.session_id, p.asked_at, p.ticket, 'waiting', p.not_before, p.attempts, p.failed"
     " FROM pending_diagnoses p",
@@ -50,7 +50,7 @@ MILLISECONDS = {
     "sqlite": "(CAST(strftime('%s', substr({0}, 1, 19)) AS INTEGER) * 1000 + CAST(substr({0}, 21, 3) AS INTEGER))",
     "postgresql": "CAST(floor(extract(epoch FROM {0}) * 1000) AS BIGINT)",
 }
-"""As in 0018."""
+"""Milliseconds, as in 0018."""
 UNITS = """
 CREATE VIEW health_units AS
 SELECT u.serial AS unit, t.name AS unit_type, u.lot AS lot, u.simulated AS simulated,
@@ -73,7 +73,7 @@ LEFT JOIN {waiting}
 
 
 def upgrade() -> None:
-    """What waits is carried over, with why its last try failed."""
+    """Carries waiting work over, with the reason for which its last try failed."""
     time, whole = sa.DateTime(timezone=True), sa.Integer()
     op.create_table(
         "work",

@@ -33,7 +33,7 @@ GONE = {
     "deliveries": ("next_at",),
 }
 LONG_AGO = "1970-01-01 00:00:00+00:00"
-"""Until the time is carried over."""
+"""Stands in until the time is carried over."""
 WORK_OF = {
     "recomputations": "(SELECT w.{0} FROM work w JOIN units u ON w.key = u.serial || ' ' || recomputations.revision"
     " WHERE w.kind = 'recomputation' AND u.id = recomputations.unit_id)",
@@ -52,7 +52,7 @@ BACK = {
 
 
 def upgrade() -> None:
-    """What waits is carried over, with why its last try failed."""
+    """Carries waiting work over, with the reason for which its last try failed."""
     for query in CARRIED:
         op.execute(f"INSERT INTO work ({COLUMNS}) {query}")
     op.add_column("deliveries", sa.Column("ended_at", sa.DateTime(timezone=True), nullable=True))

@@ -1,4 +1,4 @@
-"""How long a unit had been switched on when its session began, and what the named causes gain in one sentence.
+"""Adds the time since power-on at the start of a session, and the sentence on what the named causes gain.
 
 What earlier releases kept states neither.
 

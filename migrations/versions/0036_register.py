@@ -17,12 +17,12 @@ MILLISECONDS = {
     "sqlite": "(CAST(strftime('%s', substr({0}, 1, 19)) AS INTEGER) * 1000 + CAST(substr({0}, 21, 3) AS INTEGER))",
     "postgresql": "CAST(floor(extract(epoch FROM {0}) * 1000) AS BIGINT)",
 }
-"""As in 0018; the views as in 0033, with what is added at the end of each."""
+"""Milliseconds, as in 0018; the views as in 0033, with additions at the end of each."""
 ENGLISH = {
     "sqlite": "CASE instr({0}, char(31)) WHEN 0 THEN {0} ELSE substr({0}, 1, instr({0}, char(31)) - 1) END",
     "postgresql": "split_part({0}, chr(31), 1)",
 }
-"""Of a sentence, without its parts."""
+"""A sentence without its parts."""
 OF_UNITS = """
 CREATE{again} VIEW health_units AS
 SELECT u.serial AS unit, t.name AS unit_type, u.lot AS lot, u.simulated AS simulated,

@@ -1,6 +1,6 @@
-"""What was taken off a change for the temperature of its session.
+"""The correction of a change for the temperature of its session.
 
-Of sessions judged by earlier releases nothing was.
+Sessions judged by earlier releases had none.
 
 Revision: 0037, after 0036
 """

@@ -1,6 +1,6 @@
-"""What the temperature laws of a type's units are alike in, with each revision of its tolerances.
+"""Common temperature laws of a type's units, with each revision of its tolerances.
 
-Types that are there know nothing of it.
+Types that are there have none yet.
 
 Revision: 0038, after 0037
 """

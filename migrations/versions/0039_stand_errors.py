@@ -1,4 +1,4 @@
-"""What the document of a stand's certificate states of the stand's errors.
+"""Errors of the stand, as stated in the document of its certificate.
 
 Certificates recorded by hand state none.
 

@@ -23,7 +23,7 @@ class Truth:
 
     effect: Effect
     names: tuple[str, ...]
-    """Of the sensors."""
+    """Names of the sensors."""
     strength: float
     nearest: Rival | None
     """The closest rival; None when there is none."""
@@ -38,7 +38,7 @@ class Truth:
 
 @dataclass(frozen=True)
 class Case:
-    """What is given to the diagnosis, and the truth."""
+    """Files that the diagnosis is given, and the truth."""
 
     label: str
     kind: str
@@ -51,7 +51,7 @@ class Case:
 
 @dataclass(frozen=True, eq=False)
 class Draw:
-    """What a case is drawn with."""
+    """Settings with which a case is drawn."""
 
     label: str
     rng: np.random.Generator
@@ -77,7 +77,7 @@ def truth_of(field: Field, effect: Effect, strength: float, readings: Array, *, 
 
 
 def parameters_of(effect: Effect) -> int:
-    """What parsimony counts: of a drift what moved, else what the catalogue says."""
+    """Number of parameters that parsimony counts: for a drift those that moved, else as in the catalogue."""
     if effect.cause == "sensor-drift":
         return sum(k != 0 for k in effect.amplitude)
     return CATALOGUE[effect.cause].parameters
@@ -90,7 +90,7 @@ def _all_seen(left: Array) -> bool:
 
 
 def effect_columns(session: Session, effect: Effect) -> Array:
-    """(R·m, p) what the fit of an effect could take away, reading units."""
+    """(R·m, p) columns that the fit of an effect could take away, reading units."""
     if effect.cause == "excess-noise":
         return np.zeros((session.schedule.rows * session.unit.size, 1))
     if effect.cause in DISCRETE or effect.cause == "saturation":

@@ -111,7 +111,7 @@ def _hidden(draw: Draw, kind: str, cause: str | None, strengths: tuple[float, fl
 
 
 def _outside_root(session: Session, earlier: list[Session]) -> np.ndarray:
-    """What other sessions, or else the maker, say of the parameters."""
+    """Root of the information on the parameters, from other sessions or else from the maker."""
     return root(history_information(earlier) if earlier else nominal_information(session))
 
 

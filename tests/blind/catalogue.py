@@ -17,7 +17,7 @@ class Hidden:
 
     @property
     def parameters(self) -> int:
-        """What parsimony counts."""
+        """Number of parameters that parsimony counts."""
         return self.size if self.free is None else self.free
 
 

@@ -16,7 +16,9 @@ BLOCKS = (
     Block("orientations, 24 accelerometers", accelerometers=24, stand=False),
 )
 SPREAD = 0.6
-"""Of the ln of the sizes: a sensor in six shows less than half of what is usual, one in six almost twice as much."""
+"""Standard deviation of the ln of the sizes: a sensor in six shows less than half of the usual, one in six almost twice
+as much.
+"""
 SHOWN = 0.4
 """Share of a step that the calibration must leave: one between the runs of a stand is taken for a turn of the axes."""
 SAFE = 4
@@ -29,11 +31,11 @@ class Driven:
 
     session: dict[str, Any]
     sensors: tuple[str, ...]
-    """That follow."""
+    """Names of the sensors that follow."""
     strength: tuple[float, ...]
-    """Of every one of them, standard errors."""
+    """Strength in every one of them, standard errors."""
     size: tuple[float, ...]
-    """Of every one of them, m/s² or rad/s per unit of the course."""
+    """Size in every one of them, m/s² or rad/s per unit of the course."""
     shape: float
     """Time constant, s, or the first row after a step, counted from 1; 0 where the course has neither."""
 
@@ -72,7 +74,9 @@ COURSES: dict[str, Callable[[Array, np.random.Generator], tuple[Array, float]]] 
 def draw_course(
     block: Block, course: str, count: int, together: float, rng: np.random.Generator, *, even: bool = False
 ) -> Driven:
-    """So many sensors follow one course, all ``together`` by so many standard errors; ``even``: each by as many."""
+    """A session in which so many sensors follow one course, all ``together`` of so many standard errors; ``even``: each
+    of as many.
+    """
     world, up, time = _world(block, rng)
     m = world.unit.size
     shape, value = COURSES[course](time, rng)
@@ -91,7 +95,7 @@ def draw_course(
 
 
 def draw_apart(block: Block, course: str, count: int, each: float, rng: np.random.Generator) -> Driven:
-    """So many sensors, ``each`` by so many standard errors on a course drawn for it alone."""
+    """A session in which so many sensors follow courses of their own, ``each`` of so many standard errors."""
     world, up, time = _world(block, rng)
     m = world.unit.size
     sensors = np.sort(rng.choice(m, count, replace=False))
@@ -168,8 +172,9 @@ class Life:
 
 
 def draw_life(block: Block, kind: str, each: float, rng: np.random.Generator, *, earlier: int = 3) -> Life:
-    """So many ``earlier`` sessions of a warm unit, one a month, then one that is sound, a ``COLD`` start that moves
-    every sensor, about ``each`` by so many standard errors, or one in which sensors have changed for good."""
+    """``earlier`` sessions of a warm unit, one a month, then one that is sound, one with a ``COLD`` start that moves
+    every sensor, each by about ``each`` standard errors, or one in which sensors have changed for good.
+    """
     world, up, time = _world(block, rng)
     m, tau = world.unit.size, float(np.ptp(time) * rng.uniform(0.3, 0.8))
     shape, error = np.exp(-time / tau), np.hypot(world.noise.reading, world.noise.repeatability) / np.sqrt(len(time))

@@ -1,4 +1,4 @@
-"""Everything of a session that is drawn at random but the effect: unit, stand, site, noise."""
+"""Draws all of a session at random but the effect: unit, stand, site, noise."""
 
 from dataclasses import dataclass, replace
 
@@ -18,7 +18,7 @@ ONE_RUN = 0.15
 
 @dataclass(frozen=True)
 class Arrangement:
-    """Which kinds of sensors a block holds."""
+    """Kinds of sensors in a block."""
 
     accelerometers: int
     gyros: int

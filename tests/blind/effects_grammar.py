@@ -92,11 +92,11 @@ GRAMMAR = {
 """Effects by their name, as Effect.cause holds it."""
 
 WARM = tuple(name for name in GRAMMAR if "T" in name)
-"""Those of temperature."""
+"""The effects that depend on temperature."""
 
 
 def told_of(session: Session, name: str) -> bool:
-    """Whether the file of a session states what the effect depends on."""
+    """Whether the file of a session states the variables of the effect."""
     schedule, words = session.schedule, name.split("·")
     timed = schedule.timed or not any(w in ("t", "t²", "lag T", "dT/dt") for w in words)
     return timed and (schedule.thermometer or name not in WARM)

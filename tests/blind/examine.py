@@ -23,7 +23,7 @@ def examine(case: Case, dump: str | None = None) -> Outcome:
 
 
 def diagnosed(case: Case) -> dict[str, Any]:
-    """What the diagnosis says, from the files alone; a failure of the numerics counts as a wrong name and goes on."""
+    """The diagnosis' answer, from the files alone; a failure of the numerics counts as a wrong name and goes on."""
     try:
         session = read_session(case.session)
         left_out = {t.effect.cause for t in case.truths} if case.kind == LEFT_OUT else set()

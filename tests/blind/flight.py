@@ -54,7 +54,7 @@ class Block:
 
 @dataclass(frozen=True)
 class Setting:
-    """What a recording is like."""
+    """Circumstances of a recording."""
 
     seconds: float = 240.0
     arm: float = 0.05

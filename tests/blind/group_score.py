@@ -31,12 +31,12 @@ class GroupOutcome:
     listed: tuple[bool, ...]
     alternatives: int
     forms: tuple[str, ...]
-    """As what the truths were found."""
+    """Form that each truth was found as."""
     pulls: tuple[float, ...]
     unexplained: bool
     terms: int
     sure: bool
-    """Something has a name, and nothing is said to be without one."""
+    """Whether something has a name, and nothing is reported without one."""
     doubted: bool
     """The first finding may as well be something outside the catalogue."""
     crowd: int

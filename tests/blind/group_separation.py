@@ -1,4 +1,4 @@
-"""How far a lasting effect is from every other one on the sessions of a group, by the generator's own physics."""
+"""Distance of a lasting effect from every other one on the sessions of a group, by the generator's own physics."""
 
 from math import fsum
 from typing import Any

@@ -63,11 +63,11 @@ class GroupTruth:
     form: str
     since: int
     strengths: tuple[float, ...]
-    """Of every session, standard errors; 0 where it does not act."""
+    """Strength in every session, standard errors; 0 where it does not act."""
     separation: float
-    """From the nearest other cause or level, on the pool."""
+    """Separation from the nearest other cause or level, on the pool."""
     spread: float
-    """Of the amplitude between sessions, relative."""
+    """Spread of the amplitude between sessions, relative."""
 
     @property
     def pooled(self) -> float:
@@ -77,7 +77,7 @@ class GroupTruth:
 
 @dataclass(frozen=True, eq=False)
 class Group:
-    """What is given away, and the truth."""
+    """Files that are given away, and the truth."""
 
     label: str
     level: str
@@ -86,7 +86,7 @@ class Group:
     truths: tuple[GroupTruth, ...]
     worlds: list[Session]
     effects: list[list[Effect]]
-    """Of every session."""
+    """Effects in every session."""
 
 
 def draw_group(
@@ -189,7 +189,7 @@ def _like(unit: Unit, number: int, rng: np.random.Generator) -> Unit:
 def draw_truths(
     level: str, kind: str, form: str, worlds: list[Session], rng: np.random.Generator, quiet: bool
 ) -> tuple[GroupTruth, ...]:
-    """None, one or two effects."""
+    """Draws none, one or two effects."""
     count = {"none": 0, "two": 2}.get(kind, 1)
     found: list[GroupTruth] = []
     for _ in range(count):
@@ -267,7 +267,7 @@ def draw_outside(first: Session, cause: str, common: bool, rng: np.random.Genera
 
 
 def _shows(world: Session, cause: str) -> bool:
-    """Whether the effect acts: it does whatever the file holds, but a file without its variable cannot tell it."""
+    """Whether the effect shows: it acts whatever the file holds, but a file without its variable cannot tell it."""
     return cause not in CATALOGUE or CATALOGUE[cause].scope != SENSOR or available(world, cause)
 
 

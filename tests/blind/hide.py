@@ -27,7 +27,7 @@ class UnhideableError(Exception):
 
 
 def signature(session: Session, effect: Effect, others: tuple[Effect, ...] = ()) -> Array:
-    """(R, m) what the effect changes in the readings, reading units."""
+    """(R, m) change of the readings by the effect, reading units."""
     return mean_readings(session, [*others, effect]) - mean_readings(session, others)
 
 
@@ -149,7 +149,7 @@ def _clipped_to(lens: Lens, effect: Effect, target: float) -> tuple[Effect, floa
 
 
 def _crossing(excess: Callable[[float], float], low: float, high: float) -> float:
-    """Where a growing function crosses zero, searched on a logarithmic scale."""
+    """Point at which a growing function crosses zero, searched on a logarithmic scale."""
     if excess(low) > 0 or excess(high) < 0:
         raise UnhideableError
     return float(np.exp(brentq(lambda x: excess(np.exp(x)), np.log(low), np.log(high), xtol=1e-4)))

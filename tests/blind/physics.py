@@ -1,4 +1,4 @@
-"""What the stand applies and what the sensors read: the equations, one after another."""
+"""The vectors that the stand applies and the readings of the sensors: the equations, one after another."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -99,7 +99,7 @@ def mean_readings(session: Session, effects: Sequence[Effect] = (), errors: Stan
 
 
 def recorded(u: Array, effects: Sequence[Effect]) -> Array:
-    """What was written down of readings (R, m), reading units: columns exchanged, signs turned."""
+    """Readings (R, m) as they were written down, reading units: columns exchanged, signs turned."""
     u = u.copy()
     for effect in effects:
         if effect.cause == "channels-swapped":

@@ -1,4 +1,4 @@
-"""How the stand holds the block at every row."""
+"""Poses in which the stand holds the block, row by row."""
 
 from dataclasses import dataclass, replace
 from typing import Any
@@ -22,7 +22,7 @@ class Pose:
     gravity_factor: float
 
     def moved(self, **by: Any) -> "Pose":
-        """The same with the named angles larger by what is given."""
+        """The pose with the named angles larger by the given amounts."""
         return replace(self, **{name: getattr(self, name) + value for name, value in by.items()})
 
 

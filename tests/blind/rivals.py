@@ -130,7 +130,7 @@ def _of_each_sensor(session: Session, cause: str) -> Iterator[Candidate]:
 
 
 def _clips(session: Session, i: int) -> Array:
-    """(G, R·m, 1) what limits from just below the extreme to further down take away, at either side and both."""
+    """(G, R·m, 1) parts cut off by limits from just below the extreme to further down, at either side and at both."""
     clean = mean_readings(session)
     grid = []
     for side in (1.0, -1.0, 0.0):

@@ -9,7 +9,7 @@ from tests.blind.world import Array, Schedule
 
 @dataclass(frozen=True)
 class Wanted:
-    """What a schedule is to hold."""
+    """Requirements on a schedule."""
 
     positions: int
     runs: tuple[bool, ...]

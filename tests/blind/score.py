@@ -45,9 +45,9 @@ class Outcome:
     listed: bool
     """The truth is the first finding or one of its alternatives."""
     named: tuple[bool, ...]
-    """For each truth, whether some finding is it."""
+    """Whether some finding is each truth."""
     offered: tuple[bool, ...]
-    """For each truth, whether some finding is it or lists it among its alternatives."""
+    """Whether some finding is each truth or lists it among its alternatives."""
     unexplained: bool
     unexplained_listed: bool
     """Said, or among the alternatives of a name."""

@@ -16,12 +16,14 @@ CONTAINS = 2.0
 
 
 SAME_SPAN = frozenset({"g-sensitivity", "sensor-drift"})
-"""On one stand at one setting k·n of a gyro is a change of its scale and axis, whatever parsimony counts."""
+"""Causes that on one stand at one setting are alike: k·n of a gyro is a change of its scale and axis, whatever
+parsimony counts.
+"""
 
 
 @dataclass(frozen=True)
 class Rival:
-    """How far one explanation is from the truth."""
+    """One explanation and its distance from the truth."""
 
     cause: str
     sensors: tuple[int, ...]

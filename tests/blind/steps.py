@@ -24,7 +24,7 @@ SHOWN = 0.4
 
 @dataclass(frozen=True)
 class Block:
-    """What is measured."""
+    """Block and programme to measure."""
 
     name: str
     accelerometers: int = 0
@@ -49,11 +49,13 @@ class Stepped:
     rows: tuple[int, ...]
     """The first after the step of every one of the sensors, counted from 1."""
     size: tuple[float, ...]
-    """Of every one of the sensors, m/s² or rad/s."""
+    """Step of every one of the sensors, m/s² or rad/s."""
 
 
 def draw_steps(block: Block, strengths: Array, rng: np.random.Generator, *, apart: bool = False) -> Stepped:
-    """So many sensors step by ``strengths`` (k,) standard errors each; ``apart``: each at a row of its own."""
+    """A session in which so many sensors step by ``strengths`` (k,) standard errors each; ``apart``: each at a row of
+    its own.
+    """
     world, up = session_of(block, rng), directions(rng)
     rows, m = world.schedule.rows if block.stand else ORIENTATIONS, world.unit.size
     sensors = np.sort(rng.choice(m, len(strengths), replace=False))
@@ -73,7 +75,7 @@ def draw_steps(block: Block, strengths: Array, rng: np.random.Generator, *, apar
 
 
 def draw_others(block: Block, kind: str, strength: float, rng: np.random.Generator) -> Stepped:
-    """What may look like a step of all zeros and is none, of so many standard errors: ``kind`` of `OTHERS`."""
+    """An effect that resembles a step of all zeros, of so many standard errors: ``kind`` of `OTHERS`."""
     world, up = session_of(block, rng), directions(rng)
     rows, m = world.schedule.rows if block.stand else ORIENTATIONS, world.unit.size
     added = OTHERS[kind](world, rows, rng)
@@ -149,14 +151,14 @@ def _left(block: Block, world: Session, up: Array, columns: Array) -> Array:
 
 
 def _strength_alone(world: Session, sensor: int, steps: Array) -> Array:
-    """(S,) the same with nothing absorbed but a constant."""
+    """(S,) strength of steps with nothing absorbed but a constant."""
     share = steps.mean(axis=0)
     error = np.hypot(world.noise.reading, world.noise.repeatability)[sensor]
     return np.asarray(np.sqrt(np.maximum(len(steps) * share * (1 - share), 1e-9)) / error)
 
 
 def _absorbed(world: Session, up: Array) -> Array:
-    """(R·m, 5m + 2R) of parameters and of each row's own direction, standard errors."""
+    """(R·m, 5m + 2R) columns absorbed by the parameters and by each row's own direction, standard errors."""
     unit, g = world.unit, gravity(world.site)
     a = g * up @ unit.axis.T
     R, m = a.shape

@@ -1,4 +1,4 @@
-"""How strong a signature is in a session: what the baseline and the stand's common errors leave of it, whitened.
+"""Strength of a signature in a session: the part that baseline and common stand errors leave, whitened.
 
 The covariance of all readings holds the noise of each reading, the β error that all sensors of a row share and the
 stand's constant errors that all readings share. Derivatives are numerical, of our own physics.
@@ -44,7 +44,7 @@ def _stepped(unit: Unit, element: int, step: Array) -> Unit:
 
 
 def covariance(session: Session) -> Array:
-    """(R·m, R·m) of the readings, reading units squared."""
+    """(R·m, R·m) covariance of the readings, reading units squared."""
     R, m = session.schedule.rows, session.unit.size
     own = session.unit.scale**2 * (session.noise.reading**2 + session.noise.repeatability**2)
     C = np.diag(np.tile(own, R))
@@ -71,7 +71,7 @@ def _stand_column(session: Session, which: int) -> Array:
 
 
 class Lens:
-    """What a session sees: columns of readings → what is left of them, in standard errors of a reading."""
+    """View of a session: columns of readings → the part left of them, in standard errors of a reading."""
 
     def __init__(self, session: Session, prior: Array | None = None):
         """``prior`` (p, 5m): root of the information that other sessions or the maker give on the parameters."""
@@ -92,12 +92,12 @@ class Lens:
         return np.vstack([white, np.zeros((self._added, columns.shape[1]))])
 
     def left(self, columns: Array) -> Array:
-        """(R·m + p, k) what the baseline leaves of columns (R·m, k) of readings, standard errors."""
+        """(R·m + p, k) remainder of columns (R·m, k) of readings after the baseline, standard errors."""
         white = self.whiten(columns)
         return white - self._basis @ (self._basis.T @ white)
 
     def without(self, columns: Array) -> "Lens":
-        """The same lens with further columns (R·m, k), reading units, taken into the baseline."""
+        """The lens with further columns (R·m, k), reading units, taken into the baseline."""
         other = object.__new__(Lens)
         other.__dict__.update(self.__dict__)
         other._basis = np.hstack([self._basis, orthonormal(self.left(columns))])
@@ -121,7 +121,7 @@ class Lens:
         return float(seen @ np.linalg.solve(grown, seen) - np.linalg.slogdet(grown)[1])
 
     def _noise_columns(self, sensor: int, sigma: float) -> Array:
-        """(n, R) what is left of one sigma of added noise in each reading of a sensor."""
+        """(n, R) remainder of one sigma of added noise in each reading of a sensor."""
         R, m = self.session.schedule.rows, self.session.unit.size
         chosen = np.zeros((R * m, R))
         chosen[np.arange(R) * m + sensor, np.arange(R)] = sigma * self.session.unit.scale[sensor]
@@ -142,7 +142,7 @@ def root(information: Array) -> Array:
 
 
 def history_information(earlier: list[Session]) -> Array:
-    """(5m, 5m) of earlier sessions on the parameters, one over their units squared; one stand draw each."""
+    """(5m, 5m) information of earlier sessions on the parameters, one over their units squared; one stand draw each."""
     total = np.zeros((0, 0))
     for session in earlier:
         information = Lens(session).information()
@@ -155,6 +155,8 @@ NOMINAL_AXIS = np.radians(0.5) / np.sqrt(6)
 
 
 def nominal_information(session: Session) -> Array:
-    """(5m, 5m) of the maker's nominal axes and scales, one over units squared, as loosely as units are drawn."""
+    """(5m, 5m) information of the maker's nominal axes and scales, one over units squared, as loosely as units are
+    drawn.
+    """
     one = np.array([NOMINAL_SCALE**-2, 0, 0, NOMINAL_AXIS**-2, NOMINAL_AXIS**-2])
     return np.diag(np.tile(one, session.unit.size))

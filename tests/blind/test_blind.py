@@ -64,7 +64,7 @@ def test_structure_outside_the_catalogue_is_unexplained():
 
 @pytest.mark.slow
 def test_a_cause_left_out_of_the_catalogue_is_not_given_another_name():
-    """Where no other explanation comes within ten standard errors."""
+    """Asked where no other explanation comes within ten standard errors."""
     outcomes = examined(LEFT_OUT, [(k, cause) for k, cause in enumerate(CATALOGUE) if k % 6 == 1])
     far = [o for o in outcomes if min(o.separations) >= FAR]
     assert len(far) > 3

@@ -13,7 +13,7 @@ KNOWN = {"exponential": "warm-up", "step": "bias-jump", "ramp": "bias-ramp", "ro
 
 
 def found_in(hidden: Driven) -> tuple[Finding, ...]:
-    """What a diagnosis names."""
+    """Findings of the diagnosis."""
     return diagnose(read_session(hidden.session)).findings
 
 

@@ -90,7 +90,7 @@ def test_sessions_without_an_effect_have_the_noise_that_they_state(seed: int):
 
 
 def test_the_matched_statistic_has_the_strength_and_unit_spread():
-    """Over 400 draws of noise and stand errors: mean the strength, standard deviation one."""
+    """The mean is the strength and the standard deviation one, over 400 draws of noise and stand errors."""
     session = accelerometers(7)
     lens = Lens(session)
     rng = np.random.default_rng(7)

@@ -1,4 +1,4 @@
-"""What no single session shows must be found in the group, at its level, and nothing where there is nothing."""
+"""Effects that no single session shows must be found in the group, at their level, and none where there is none."""
 
 from typing import Any
 

@@ -19,7 +19,7 @@ OWN, SHARED = ("bias-asymmetry",), ("stand-drift",)
 
 
 def one_of_many(alone: Lesson) -> Lesson:
-    """With a leading axis."""
+    """The lesson with a leading axis."""
     return Lesson(Design(*(x[None] for x in alone.design)), *(x[None] for x in alone[1:]))
 
 

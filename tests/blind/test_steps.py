@@ -12,7 +12,7 @@ STAND, ORIENTATIONS = BLOCKS[0], BLOCKS[2]
 
 
 def found_in(hidden: Stepped) -> tuple[Finding, ...]:
-    """What a diagnosis names."""
+    """Findings of the diagnosis."""
     return diagnose(read_session(hidden.session)).findings
 
 

@@ -1,4 +1,4 @@
-"""What is simulated: a unit, a stand, a schedule, and one session of them. SI throughout; angles in rad."""
+"""The simulated world: a unit, a stand, a schedule, and one session of them. SI throughout; angles in rad."""
 
 from dataclasses import dataclass, field
 
@@ -63,7 +63,7 @@ class Schedule:
 
 @dataclass(frozen=True)
 class Site:
-    """Where the file says the session was measured."""
+    """Place of measurement as the file states it."""
 
     latitude: float
     height: float

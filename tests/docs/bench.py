@@ -22,7 +22,7 @@ FACTS = {
     **{f"{name}: scale factor": "0.12" for name in NAMES},
     **{f"{name}: unit of readings": "V" for name in NAMES},
 }
-"""What the page asks for, and what the tutorial says."""
+"""Answers of the tutorial to the questions of the page."""
 
 
 def session() -> Document:
@@ -38,7 +38,7 @@ def session() -> Document:
 
 
 def rows() -> list[list[Any]]:
-    """As the bench writes them."""
+    """The rows as the bench writes them."""
     table = session()["table"]
     readings = ([round(1000 * cell, 4) for cell in table[name]] for name in NAMES)
     columns = (table["run"], table["beta_deg"], table["time_s"], table["temperature_c"], *readings)

@@ -27,7 +27,7 @@ with socket.socket(socket.AF_UNIX) as way:
     way.sendall(len(call).to_bytes(8, "big") + call)
     sys.exit(way.recv(1)[0])
 """
-"""What stands in the shell's path; it imports nothing of ours."""
+"""The command in the shell's path; it imports nothing of ours."""
 
 
 def main() -> None:
@@ -47,7 +47,7 @@ def main() -> None:
 
 
 def _answer(way: socket.socket) -> None:
-    """In the fork: becomes the command, and tells its exit code."""
+    """Becomes the command in the fork, and sends its exit code."""
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
     _, handles, _, _ = socket.recv_fds(way, 1, 3)
     for place, handle in enumerate(handles):

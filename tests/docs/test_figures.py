@@ -26,7 +26,7 @@ def rate(page: str, row: str) -> str:
 
 
 def rows(page: str) -> str:
-    """How many causes the tables of a page list."""
+    """Number of causes in the tables of a page."""
     return str(len(re.findall(r"^\| `[a-z-]+` \|", (ROOT / page).read_text("utf-8"), re.MULTILINE)))
 
 
@@ -36,7 +36,7 @@ FIGURES = {
     (STUDY, "99.2 % of 1693"): lambda page: rate(page, "named first where separated by 5"),
     (STUDY, "0.8 % of 764"): lambda page: rate(page, "a name where there is no effect"),
 }
-"""Where a link of the README is a figure: what the page says."""
+"""Figures in the README's links, and what the linked page says."""
 
 
 @pytest.mark.parametrize(("page", "figure"), FIGURES)

@@ -46,13 +46,13 @@ def executed(notebook: Path, folder: Path, address: str) -> Any:
 
 
 def printed(notebook: Any) -> list[str]:
-    """What every cell prints."""
+    """Printed text of every cell."""
     outputs = (cell.outputs for cell in notebook.cells if cell.cell_type == "code")
     return ["".join(one.text for one in found if one.output_type == "stream") for found in outputs]
 
 
 def drawn(notebook: Any) -> int:
-    """How many pictures there are."""
+    """Number of pictures."""
     cells = (cell for cell in notebook.cells if cell.cell_type == "code")
     return sum("image/png" in one.get("data", {}) for cell in cells for one in cell.outputs)
 

@@ -39,7 +39,7 @@ def links(page: Path) -> list[tuple[Path, str]]:
 
 
 def anchors(page: Path) -> set[str]:
-    """As the generator makes them of the headings."""
+    """Anchors of a page as the generator makes them of the headings."""
     bare = (
         re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", found).lower() for found in HEADING.findall(page.read_text("utf-8"))
     )

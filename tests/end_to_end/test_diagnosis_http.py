@@ -30,7 +30,7 @@ HIDDEN = list(CATALOGUE)[3::15]
 
 @pytest.fixture(scope="module")
 def diagnosed(sqlite: Databases, stock_of: StockOf) -> Iterator[Diagnosed]:
-    """What one service for all causes finds over HTTP in the session of a case, its history stored before."""
+    """Diagnoses the session of a case over HTTP, its history stored before, in one service for all causes."""
     with (
         stock_of(sqlite).holding() as settings,
         http_client(create_app(settings)) as client,

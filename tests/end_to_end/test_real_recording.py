@@ -41,7 +41,7 @@ def accelerometers(document: dict[str, Any]) -> dict[str, Any]:
 
 @pytest.fixture
 def answers(settings: Settings, sessions: list[tuple[str, bytes]]) -> Any:
-    """What the service says after the two uploads."""
+    """Answers of the service after the two uploads."""
     with serving(settings) as address, httpx.Client(base_url=f"{address}/api/v1") as http:
         receipts = [http.post("/sessions", files={"file": session}) for session in sessions]
         assert [receipt.status_code for receipt in receipts] == [201, 201], [r.text for r in receipts]

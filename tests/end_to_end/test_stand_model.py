@@ -1,5 +1,6 @@
-"""As an engineer would: an eccentric head that several units show together is found, accepted for the stand, every unit
-on it is computed again beside the requests, and the pages say what that changed."""
+"""An engineer's work: an eccentric head that several units show together is found and accepted for the stand, every
+unit on it is computed again beside the requests, and the pages say what that changed.
+"""
 
 import json
 import re
@@ -74,6 +75,6 @@ def test_found_accepted_computed_again_and_shown(bench: httpx.Client) -> None:
 
 
 def corrections(client: httpx.Client) -> list[dict[str, Any]]:
-    """What firmware is given of every session now."""
+    """Corrections for firmware, from every session as it stands."""
     sessions = client.get("/api/v1/sessions").json()["sessions"]
     return [client.get(f"/api/v1/sessions/{one['id']}/correction").json() for one in sessions]

@@ -1,4 +1,4 @@
-"""What the stand applies: golden figures from outside, and the exact stand against its linear errors."""
+"""The vectors that a stand applies: golden figures from outside, and the exact stand against its linear errors."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""What is worked out once for a session's content."""
+"""Results worked out once for a session's content."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -12,7 +12,7 @@ from tests.estimator.calibration.cases import CASES
 
 @dataclass(frozen=True, eq=False)
 class Worked:
-    """Something worked out of a session."""
+    """A result of a session."""
 
     session: CalibrationSession
 

@@ -35,7 +35,7 @@ def readings(e: Array, c: float = C) -> tuple[Array, Array]:
 
 
 def matrix_26(beta: Array) -> Array:
-    """(26) as printed: (N, 5) of powers of m/s², for β (N,), rad."""
+    """Matrix (26) as printed: (N, 5) of powers of m/s², for β (N,), rad."""
     reach = GRAVITY * np.cos(ALPHA)
     n1, n3 = -reach * np.sin(beta), reach * np.cos(beta)
     return np.column_stack([np.ones_like(beta), n1, n3, n1**2, n3**2])
@@ -96,7 +96,7 @@ def test_the_last_term_of_20_is_not_q14() -> None:
 
 
 def test_24_lacks_the_scale_under_q11() -> None:
-    """With c known to be zero q11 is K·b: print gives K·b for b."""
+    """Where c is known to be zero, q11 is K·b: print gives K·b for b."""
     u, flipped = readings(E, c=0.0)
     q11 = float(((u + flipped) / 2).mean())
     assert q11 / K == pytest.approx(B, rel=1e-9)
@@ -159,7 +159,7 @@ def test_29_lacks_a_square() -> None:
 
 
 def test_29_has_twice_the_noise_and_no_scale_under_it() -> None:
-    """Per K², as `printed` takes it, the noise variance is doubled; to the letter it is K² times D_u besides."""
+    """The noise variance per K², as `printed` takes it, is doubled; to the letter it is K² times D_u besides."""
     noisy = replace(PERFECT, noise=3e-5 * GRAVITY)
     assert printed(AXES, noisy).scale / checked(AXES, noisy).scale == pytest.approx(np.full(6, 2.0))
 
@@ -191,7 +191,9 @@ def test_the_beta_terms_of_29_and_30_are_too_large() -> None:
 
 
 def test_6_is_the_least_of_the_corrected_formulas_over_a_triad() -> None:
-    """With the square that (29) lacks, and without θ_y, (6) minimises scale and axis error summed over a triad."""
+    """Formula (6) minimises scale and axis error summed over a triad, with the square that (29) lacks, and without
+    θ_y.
+    """
     triad = np.linalg.qr(np.array([[0.3, 0.8, -0.5], [0.9, 0.1, 0.4], [0.2, -0.6, -0.7]]))[0]
 
     def total(alpha: float, formula: object = checked) -> float:

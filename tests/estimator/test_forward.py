@@ -93,7 +93,7 @@ def test_gyros_at_rest_meet_the_earth_rate_at_the_latitude() -> None:
 
 @pytest.mark.parametrize("counter", ["free-running", "reset"])
 def test_the_scatter_of_counts_is_the_quantisation_that_is_stated(counter: str) -> None:
-    """Without any other noise, at rates of which pulses are anything but whole multiples."""
+    """There is no other noise, and no rate gives a whole number of pulses."""
     steady = tuple(replace(s, bias_repeatability=0.0) for s in MIXED.schedule.sensors)
     schedule = replace(MIXED.schedule, counter=counter, sensors=steady)
     counted = simulate(schedule, MIXED.truth, np.random.default_rng(3), noise=0.0, draw=NO_ERRORS).readings[:, 3:]

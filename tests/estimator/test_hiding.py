@@ -1,5 +1,6 @@
-"""What has no plain amplitude is hidden as strong as asked, and the diagnosis names it at every seed that is tried:
-noise beyond the stated one, readings that are clipped, and what gyros alone see."""
+"""Effects without a plain amplitude are hidden as strong as asked, and the diagnosis names them at every seed that is
+tried: noise beyond the stated one, readings that are clipped, and effects in gyros alone.
+"""
 
 from dataclasses import replace
 
@@ -121,7 +122,7 @@ def test_a_clipped_sensor_stands_at_its_limit_twice_at_every_end(kind: str) -> N
 
 @pytest.mark.parametrize(("kind", "strength"), [(ACCELEROMETER, 9000.0), (GYROSCOPE, 60.0)])
 def test_clipping_is_as_strong_as_asked(kind: str, strength: float) -> None:
-    """Of a gyro to half a pulse of the limit, a fifth of the noise of a reading."""
+    """A gyro is right to half a pulse of the limit, a fifth of the noise of a reading."""
     [plain] = on_stand(kind, 2)
     for seed in range(4):
         _, hidden = hide([plain], cause("saturation"), np.random.default_rng(seed), strength=strength)

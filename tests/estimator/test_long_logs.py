@@ -14,7 +14,7 @@ from estimator.static import average
 from tests.estimator.test_static import NOISE, RATE, raw, tumble
 
 ROWS = ("readings", "standard_errors", "time", "temperature", "flipped", "beta", "directions", "position")
-"""Whose length is that of the log."""
+"""Fields as long as the log."""
 COMPARED = (*ROWS, "at_ends", "vibration", "counts_averaged")
 
 
@@ -28,7 +28,7 @@ def cut(session: CalibrationSession, rows: int) -> list[CalibrationSession]:
 
 
 def in_parts(session: CalibrationSession, rows: int) -> LongLog:
-    """The same, as a log in parts."""
+    """The session as a log in parts."""
 
     def labels():
         for part in cut(session, rows):
@@ -48,7 +48,7 @@ def labels_of(readings, places):
 
 
 def assert_same(session: CalibrationSession, rows: int) -> None:
-    """In parts and in one piece it is averaged to the same."""
+    """Asserts that the session is averaged to the same in parts and in one piece."""
     whole = average(session, residual_per_freedom, tilt_response)
     parts = average_long(in_parts(session, rows), residual_per_freedom, tilt_response)
     for name in COMPARED:

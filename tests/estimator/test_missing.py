@@ -1,4 +1,4 @@
-"""What a session that is being measured still lacks."""
+"""The rows that a session under way still lacks."""
 
 import math
 
@@ -21,7 +21,7 @@ def rows(document: Document, *kept: int) -> Document:
 
 
 def after(document: Document, *kept: int, **how: int | bool) -> Missing:
-    """What is missing after these rows."""
+    """The missing rows after these."""
     return missing(read_session(rows(document, *kept)), **how)
 
 

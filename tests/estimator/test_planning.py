@@ -17,7 +17,7 @@ from tests.estimator.calibration.cases import SITE, STAND, accelerometers, gyros
 from tests.estimator.calibration.cases import block as block_on_fixture
 
 NOISE = np.full(6, np.hypot(2.5e-5, 2e-5 / 3 * 9.8))
-"""At the input, m/s²."""
+"""Noise at the input, m/s²."""
 PUBLISHED = StandErrors(theta_x=ARCSEC / 3, theta_y=ARCSEC / 3, alpha=ARCSEC, beta=ARCSEC)
 
 
@@ -28,7 +28,7 @@ def block(sensors: tuple[Sensor, ...], positions: int = 12, **how: object) -> Ca
 
 @pytest.fixture(scope="module")
 def unasked() -> Plan:
-    """What is proposed for the published block when nothing is asked for."""
+    """The plan for the published block when nothing is asked for."""
     return plan(block(accelerometers(), 24), sigma=NOISE)
 
 

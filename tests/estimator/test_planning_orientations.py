@@ -1,4 +1,4 @@
-"""What a set of still orientations identifies before it is flown: 13 parameters of four accelerometers."""
+"""Identification by a set of still orientations before it is flown: 13 parameters of four accelerometers."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""What a good session file becomes."""
+"""Sessions read from good files."""
 
 import json
 import math

@@ -1,4 +1,4 @@
-"""What a bad session file is refused for: every fault, with its field and row and what to do."""
+"""Problems of bad session files: every fault is reported, with its field and row and a remedy."""
 
 import json
 

@@ -87,7 +87,7 @@ def test_three_sensors_that_always_lie_alike_cannot_be_are_separable():
 
 
 def test_waves_are_weighed_by_what_no_tilt_explains():
-    """Against dense matrices."""
+    """Compared with dense matrices."""
     rng = np.random.default_rng(0)
     z, S = rng.standard_normal((2, 4, 5)), rng.uniform(0.5, 2.0, (2, 4, 5))
     L = rng.standard_normal((2, 5, 2))

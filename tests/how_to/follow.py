@@ -32,18 +32,18 @@ class House:
 
     @property
     def environment(self) -> dict[str, str]:
-        """Where the copy comes before the source itself."""
+        """Environment in which the copy comes before the source itself."""
         path = f"{BIN}:{os.environ['PATH']}"
         return {**os.environ, "PATH": path, "PYTHONPATH": str(self.root), "COLUMNS": "200"}
 
     def run(self, *command: str) -> str:
-        """What a command prints in the copy; it must succeed."""
+        """Output of a command in the copy; it must succeed."""
         done = subprocess.run(command, cwd=self.root, env=self.environment, capture_output=True, text=True, check=False)
         assert done.returncode == 0, f"{done.stdout}\n{done.stderr}"
         return plain(done.stdout)
 
     def shell(self) -> str:
-        """What the page's shell examples print, one after another."""
+        """Output of the page's shell examples, one after another."""
         return self.run("bash", "-e", "-o", "pipefail", "-c", "\n".join(SHELL.findall(self.page)))
 
     @contextmanager

@@ -18,7 +18,7 @@ def house(tmp_path_factory: pytest.TempPathFactory) -> House:
 
 @pytest.fixture(scope="module")
 def said(house: House) -> list[str]:
-    """What the page's shell example says of each of its three sessions."""
+    """Output of the page's shell example for each of its three sessions."""
     return house.shell().split("\n\n")
 
 

@@ -50,7 +50,7 @@ def service(served: Served) -> httpx.Client:
 
 @pytest.fixture(scope="module")
 def answers(served: Served) -> list[dict[str, Any]]:
-    """Of three sessions: the reference, one that is as it was, one in which A1 has moved by 500 µg."""
+    """Answers to three sessions: the reference, an unchanged one, one in which A1 has moved by 500 µg."""
     sessions = (measured(0.0, 1), measured(0.0, 2), measured(5e-3, 3))
     return [served.http.post("/api/v1/sessions", content=json.dumps(session)).json() for session in sessions]
 

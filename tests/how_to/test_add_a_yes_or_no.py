@@ -19,7 +19,7 @@ def house(tmp_path_factory: pytest.TempPathFactory) -> House:
 
 @pytest.fixture(scope="module")
 def answers(served: Served) -> list[bool | str]:
-    """What is known of three sessions: of a plain one, one that was said to be urgent, and one that is so no more."""
+    """Answers about three sessions: a plain one, one stated to be urgent, and one that is urgent no more."""
     client, sessions, address = served.http, "/api/v1/sessions", str(served.http.base_url).rstrip("/")
     first, second = (session_bytes(unit="HURRIED", month=month) for month in (3, 6))
     plain = client.post(sessions, content=first).raise_for_status().json()
@@ -46,7 +46,7 @@ def test_six_files_change(house: House) -> None:
 
 
 def is_changed(root: Path, file: Path) -> bool:
-    """Whether a file of the copy is new, or another than it was."""
+    """Whether a file of the copy is new or changed."""
     was = PROJECT / file.relative_to(root)
     return file.suffix in (".py", ".html") and (not was.exists() or was.read_bytes() != file.read_bytes())
 

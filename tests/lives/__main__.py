@@ -47,7 +47,7 @@ def main() -> int:
 
 
 def side_by_side(minutes: float, steps: int) -> int:
-    """Both databases at once, and the table of what came of it."""
+    """Runs both databases at once, and writes the table of the results."""
     with tempfile.TemporaryDirectory(prefix="imu-lives-") as folder:
         files = {engine: Path(folder) / engine for engine in ENGINES}
         command = (sys.executable, "-m", "tests.lives", "--minutes", str(minutes), "--steps", str(steps))
@@ -82,7 +82,7 @@ def lives(engine: str, minutes: float, steps: int, only: int | None, lines: Path
 
 
 def one_life(databases: Databases, number: int, steps: int) -> dict[str, Any]:
-    """What came of one life; whatever breaks it is a find, and the next one begins."""
+    """The result of one life; whatever breaks it is a find, and the next one begins."""
     worlds, find = list[World](), ""
     with tempfile.TemporaryDirectory(prefix="imu-life-", ignore_cleanup_errors=True) as folder:
         try:

@@ -1,4 +1,4 @@
-"""The same records once more: uploaded in order of their dates to a fresh service, and restored from a backup."""
+"""Repeats the records: uploaded in order of their dates to a fresh service, and restored from a backup."""
 
 import re
 from collections.abc import Iterator
@@ -23,7 +23,7 @@ from tests.stock import stores
 
 BY = {"by": "K. Ito", "why": "as before"}
 REVISION = re.compile(r"rev (\d+)\)$")
-"""At the end of the rule that a parameter was judged by."""
+"""Revision at the end of the rule that a parameter was judged by."""
 MOST = 12
 """Differences of one comparison that are printed."""
 
@@ -51,7 +51,7 @@ def settle(world: World) -> None:
 
 
 def same_of_the_records(world: World, databases: Databases, folder: Path) -> None:
-    """What is known is a function of the accepted records, whatever their order and detours."""
+    """The state is a function of the accepted records, whatever their order and detours."""
     settle(world)
     url = databases.migrated()
     with opened(Service(url, folder / "fresh"), world.chance.randrange(2**31)) as fresh:
@@ -131,7 +131,7 @@ def _first_of_units(world: World) -> set[str]:
 
 
 def _in_order(number: int, session: dict[str, Any], first: set[str]) -> tuple[int, bool, bool, str, str]:
-    """By revision of the tolerances and date; recordings in service after what they are compared with."""
+    """Sort key by revision of the tolerances and date; recordings in service come after their reference."""
     is_later = session["id"] not in first
     return number, is_later, session["programme"] == IN_SERVICE, session["started_at"] or "", session["id"]
 
@@ -183,7 +183,7 @@ def _upload_again(world: World, fresh: World, session: dict[str, Any]) -> None:
 
 
 def _revision(world: World, id: str) -> int:
-    """Of the tolerances that a session was judged by."""
+    """Revision of the tolerances that a session was judged by."""
     found = [REVISION.search(one["rule"]) for one in world.get(f"/sessions/{id}")["decisions"]]
     return max((int(one[1]) for one in found if one), default=1)
 

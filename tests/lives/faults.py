@@ -29,7 +29,7 @@ but for a few, so that they scatter from each other by far less."""
 
 
 class Faults(Uploads):
-    """What goes wrong while somebody measures or records."""
+    """Faults of measuring and recording."""
 
     @rule(serial=st.sampled_from(TABLED), number=NUMBERS, slip=st.sampled_from(list(SLIPS)), drawn=DRAWN)
     def sends_a_gross_reading(self, serial: str, number: int, slip: str, drawn: int) -> None:
@@ -112,7 +112,7 @@ class Faults(Uploads):
                 self.expect(by <= WITHIN, f"{what}: {point['sensor']} {point['parameter']} is off by {by:.1f} u")
 
     def _recording(self, number: int) -> Document:
-        """In service."""
+        """A recording in service."""
         made = self.world.benches[FLOWN].programmes["in-service"](number - number % 3)  # every third has moved
         return dict(json.loads(json.dumps(made)))
 
@@ -133,7 +133,7 @@ def _bytes(document: Document) -> bytes:
 
 @cache
 def calibration(document: str) -> Calibration | None:
-    """Of a sound file; None where it supports none."""
+    """Calibration of a sound file; None where it supports none."""
     try:
         return calibrate(read_session(json.loads(document)))
     except SessionError:

@@ -1,4 +1,4 @@
-"""What holds after every step: nothing failed beside the requests, what is there can be read, pages say the same."""
+"""Invariants after every step: nothing failed beside the requests, all addresses can be read, pages agree."""
 
 import html
 import re
@@ -17,7 +17,7 @@ FAILED = re.compile(r'"level": "(error|critical)"|background work failed|Traceba
 LINK = re.compile(r'(?:href|src|data-src)="(/[^"#]*)')
 LEFT_OUT = re.compile(r"^/(static|sign-out|uploads/.*/file)|^/api/v1/openapi")
 COSTLY = re.compile(r"certificate|pdf|label|/plan|xlsx")
-"""What is drawn and printed, at some seconds for the first of a process: looked at in long lives only."""
+"""Addresses of drawings and prints, some seconds each for the first of a process: read in long lives only."""
 MOST_ALIKE = 2
 """Pages that differ in the values of their question only."""
 QUERIES = {
@@ -28,7 +28,7 @@ QUERIES = {
     "/session-template": ("kind=accelerometer&sensors=6",),
     "/units/{serial}/outlook": ("until=2030-01-01",),
 }
-"""What an address is asked with."""
+"""Queries of an address."""
 NAMED = {
     "units": "serial",
     "sessions": "id",
@@ -42,7 +42,7 @@ NAMED = {
 
 
 def log_is_clean(world: World) -> None:
-    """Nothing failed beside the requests."""
+    """Asserts that nothing failed beside the requests."""
     printed = world.new_log()
     if FAILED.search(printed):
         raise FindError(f"the service's log:\n{printed[-3000:]}")
@@ -103,20 +103,20 @@ def _is_refused_with_reason(answer: Any, path: str) -> bool:
 
 
 def links(text: str) -> Iterator[str]:
-    """Where a page leads within the service."""
+    """Links of a page within the service."""
     for found in LINK.findall(text):
         yield html.unescape(found)
 
 
 def read(world: World, path: str) -> None:
-    """What a program reads: an answer, or a reason why there is none."""
+    """Reads an address as a program does: an answer, or a reason why there is none."""
     answer = world.ask("GET", path)
     if answer.status_code >= 400 and "problem+json" not in answer.headers.get("content-type", ""):
         raise FindError(f"{path} → {answer.status_code}: {answer.text[:600]}")
 
 
 def addresses(world: World) -> set[str]:
-    """Of all operations that read, filled with what is there."""
+    """Addresses of all operations that read, for the records at hand."""
     names = {(kind, f"{{{of}}}"): [str(one[of]) for one in world.listed(kind)] for kind, of in NAMED.items()}
     names["stands", "{name}"] = sorted({one["stand"] for one in world.sessions() if one["stand"]})
     found = set[str]()
@@ -190,7 +190,7 @@ def session_agrees(world: World, id: str) -> None:
 
 
 def heading(text: str) -> str:
-    """What the head of a page says of its subject."""
+    """Words at the head of a page about its subject."""
     found = re.search(r"<h1>(.*?)</h1>", text, re.DOTALL)
     if found is None:
         return ""

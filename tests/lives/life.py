@@ -21,30 +21,30 @@ from tests.lives.world import World, opened
 from tests.service.receiver import receiver
 
 NOBODY = "127.0.0.1:9"
-"""Where nobody listens."""
+"""An address at which nobody listens."""
 FIRST = (("LV-101", 0), ("LV-101", 2), ("FL-790", 0))
-"""What is on record when a life begins."""
+"""Sessions on record when a life begins."""
 LOOKS = 4
 """Addresses that are read after every step."""
 
 
 @dataclass(frozen=True)
 class Size:
-    """How much is lived, and how much of it is looked at in the end."""
+    """Length of a life, and of the inspection at its end."""
 
     steps: int
     pages: int
-    """And as many answers to programs."""
+    """Number of pages, and of answers to programs, that are read."""
     ends: tuple[Callable[[World, Databases, Path], None], ...] = (same_of_the_backup, same_of_the_records)
-    """With what it is compared in the end."""
+    """Comparisons at the end."""
     prints: bool = True
-    """Whether papers are looked at."""
+    """Whether printed papers are read."""
 
 
 LONG = Size(40, 500)
 SHORT = Size(8, 12, (same_of_the_records,), prints=False)
 RESTORED = replace(SHORT, ends=(same_of_the_backup,))
-"""As short, with the other end."""
+"""The short size, with the other end."""
 
 
 class Life(Faults, Records, Works):
@@ -59,7 +59,7 @@ class Life(Faults, Records, Works):
 
     @invariant()
     def holds(self) -> None:
-        """After every step."""
+        """Checks the invariants after every step."""
         self.world.counts["steps"] += 1
         pages_agree(self.world)
         look_around(self.world, LOOKS)
@@ -67,7 +67,7 @@ class Life(Faults, Records, Works):
 
 
 def lived(machine: type[Steps], world: World, number: int, steps: int) -> None:
-    """So many steps of a machine, by the seed of a number."""
+    """Runs so many steps of a machine, seeded by a number."""
     one = seed(number)(type("OneLife", (machine,), {"world": world}))
     chosen = settings(
         max_examples=1,

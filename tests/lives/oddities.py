@@ -1,4 +1,4 @@
-"""What a session file may have, lack or say in another way, and be legal all the same."""
+"""Oddities of a session file that are legal all the same: additions, omissions and other spellings."""
 
 from collections.abc import Callable
 from datetime import datetime, timedelta, timezone
@@ -24,7 +24,7 @@ def _without_columns(ends: Callable[[str], bool]) -> Change:
 
 
 def _in_zone(hours: float) -> Change:
-    """The same moment, as a clock of another place writes it."""
+    """Writes the moment as a clock of another place does."""
 
     def change(document: Document) -> None:
         if "started_at" in document:
@@ -91,4 +91,4 @@ ODDITIES: dict[str, Change] = {
     "simulated": _says(origin="simulated"),
 }
 RARE = ("simulated", "no type", "no date")
-"""What makes another unit or another life of most that follows."""
+"""Oddities that turn most of the later sessions into another unit's or another life's."""

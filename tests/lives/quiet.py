@@ -17,7 +17,7 @@ FLAG = re.compile(r"\bFlag \d+")
 
 
 def pending(world: World) -> frozenset[str]:
-    """Everything that says that it is still being made."""
+    """The names of all that is still being made."""
     world.forget()
     found = set[str]()
     for session in world.sessions("accepted"):
@@ -46,8 +46,9 @@ def _of_unit(world: World, serial: str) -> set[str]:
 
 
 def wait_until_quiet(world: World) -> None:
-    """Until nothing is being made any more. What counts is progress: a find is what waits for an idle service, or is
-    worked on without end."""
+    """Waits until nothing is being made any more. Progress counts: work that waits for an idle service, or is done
+    without end, is a find.
+    """
     left, since, computed = frozenset({""}), monotonic(), world.service.count_processor()
 
     def is_quiet() -> bool:
@@ -69,7 +70,7 @@ def wait_until_quiet(world: World) -> None:
 
 
 def state(world: World) -> dict[str, Any]:
-    """What is known of all units, without what depends on when and under which number it was written down."""
+    """The state of all units, without times and numbers of writing."""
     world.forget()
     return {serial: _unit(world, serial) for serial in world.units() if _counted(world, serial)}
 
@@ -107,7 +108,7 @@ def _without(found: dict[str, Any], *names: str) -> dict[str, Any]:
 
 
 def differences(one: Any, other: Any, at: str = "") -> list[str]:
-    """Where two states are not the same."""
+    """Places where two states differ."""
     if isinstance(one, dict) and isinstance(other, dict):
         return [
             line

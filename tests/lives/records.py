@@ -13,7 +13,7 @@ TOLERANCES = ("scale", "bias", "quadratic", "axis")
 
 
 class Records(Steps):
-    """What is recorded and taken back."""
+    """Steps of recording and taking back."""
 
     @rule(which=WHICH, what=st.sampled_from(["withdraw", "withdraw", "accept", "accept", "accept", "correct"]))
     def changes_a_session(self, which: int, what: str) -> None:
@@ -48,7 +48,7 @@ class Records(Steps):
 
     @rule(which=WHICH, number=NUMBERS, kind=st.sampled_from(KINDS), zone=st.sampled_from(["Z", "+05:30"]))
     def services(self, which: int, number: int, kind: str, zone: str) -> None:
-        """Something was done to a unit, before or after what is on record."""
+        """Records a service to a unit, before or after what is on record."""
         if unit := self.some_unit(which):
             at = day(number).replace("Z", zone)
             new = {"kind": kind, "at": at, "by": "R. Lind", "note": "shock"}
@@ -65,7 +65,7 @@ class Records(Steps):
 
     @rule(which=WHICH, factor=st.sampled_from([0.2, 0.7, 1.5, 4.0]), interval=st.sampled_from([None, 90.0, 730.0]))
     def changes_tolerances(self, which: int, factor: float, interval: float | None) -> None:
-        """Of a unit type, tried first."""
+        """Changes the tolerances of a unit type, with a preview first."""
         found = self.world.listed("unit-types")
         if not found:
             return

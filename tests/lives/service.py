@@ -27,7 +27,7 @@ QUIET = {
 
 
 def run_command(arguments: tuple[str, ...], output: Path, environment: dict[str, str]) -> None:
-    """In a process of its own: the command line, with all that it prints in a file."""
+    """Runs the command line in a process of its own, with all its output in a file."""
     written = os.open(output, os.O_WRONLY | os.O_CREAT | os.O_APPEND)
     os.dup2(written, 1)
     os.dup2(written, 2)
@@ -61,12 +61,12 @@ class Service:
 
     @property
     def environment(self) -> dict[str, str]:
-        """Its settings beside those."""
+        """Environment variables of the service: `QUIET` and its webhook hosts."""
         return QUIET | {"IMU_HEALTH_WEBHOOK_HOSTS": ",".join(self.hooks)}
 
     @property
     def log(self) -> Path:
-        """What it printed since its last start."""
+        """File of the output since its last start."""
         return self.folder / f"service-{self.starts}.log"
 
     def command(self, *arguments: str) -> tuple[int, str]:

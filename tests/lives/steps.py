@@ -1,4 +1,4 @@
-"""What all steps share."""
+"""The common part of all steps."""
 
 from typing import Any
 
@@ -8,9 +8,9 @@ from hypothesis.stateful import RuleBasedStateMachine
 from tests.lives.world import FindError, World
 
 NUMBERS = st.integers(0, 13)
-"""Of a session within its bench; of some order, so that late ones come too."""
+"""Numbers of sessions within a bench; in mixed order, so that late ones come too."""
 WHICH = st.integers(0, 40)
-"""Of what there is, counted round."""
+"""Numbers of existing records, counted round."""
 BY = {"by": "K. Ito", "why": "as the log book says"}
 DONE = (200, 201, 202, 204, 404, 409, 422)
 """Answers to what may or may not be possible at the moment; which of them is right the other tests hold."""
@@ -27,7 +27,7 @@ class Steps(RuleBasedStateMachine):
             raise FindError(words)
 
     def tries(self, path: str, body: Any = None, method: str = "POST") -> dict[str, Any]:
-        """What may be possible at the moment or not; the answer's document, empty where it was refused."""
+        """Sends a request that may be refused at the moment; the answer's document, empty where it was refused."""
         answer = self.world.send(path, body, method)
         self.expect(answer.status_code in DONE or self.world.is_pending(answer), f"{path}: {answer.text[:400]}")
         if answer.status_code not in (200, 201) or "json" not in answer.headers.get("content-type", ""):

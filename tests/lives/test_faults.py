@@ -67,7 +67,7 @@ def test_a_wrong_range_scales_readings_and_their_noise() -> None:
 
 
 def test_heat_moves_the_biases_alone() -> None:
-    """By some 0.1 mg a degree."""
+    """The change is about 0.1 mg a degree."""
     sound = measured("FL-790", "in-service")
     off = [
         (a - b) / 0.12 for a, b in zip(columns(hot(sound, 45.0, RNG(3))).values(), columns(sound).values(), strict=True)
@@ -100,7 +100,7 @@ def test_a_gross_reading_changes_what_a_session_tells_by_little(serial: str, sli
 
 
 def holds(sound: Document, faulty: Document) -> None:
-    """Within some standard uncertainties of the sound one, unless it is refused."""
+    """Asserts that it is within some standard uncertainties of the sound one, unless it is refused."""
     try:
         made = calibrate(read_session(faulty))
     except SessionError:

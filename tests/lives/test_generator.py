@@ -67,7 +67,7 @@ def test_an_epoch_carries_the_error_of_its_reference() -> None:
 
 
 def test_what_was_entered_wrong_is_put_right_in_the_end() -> None:
-    """Of every session one upload counts in the end, of every service one record."""
+    """One upload of every session and one record of every service counts in the end."""
     rng = np.random.default_rng(13)
     type_ = draw_type(1, "accelerometers", rng)
     for i in range(10):

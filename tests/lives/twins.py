@@ -36,7 +36,7 @@ LITTLE = 0.5
 """Standard uncertainties by which sensors without a gross reading may differ: errors that a stand gives to all sensors
 of a session are told by a few readings less."""
 DAYS = 1
-"""By which the dates of a unit may differ."""
+"""Days by which the dates of a unit may differ."""
 SAME = 1e-3
 """Standard uncertainties by which figures of files differ that differ in a last digit."""
 LAST_DIGIT = 1e-9
@@ -44,7 +44,7 @@ OPPOSITE = {"pass", "fail"}
 
 
 def twin_of(document: Document) -> Document:
-    """The same file of the other half, and a last digit of its own: readings that are stored twice are questioned."""
+    """The file for the other half, with a last digit of its own: readings that are stored twice are questioned."""
     name = document["sensors"][0]["name"]
     cells = document["table"][name]
     made = {**document, "unit": document["unit"] + TWIN}
@@ -58,7 +58,7 @@ def twin_of(document: Document) -> Document:
 
 @dataclass
 class Halves:
-    """What was sent in both."""
+    """Sessions that were sent in both halves."""
 
     pairs: list[tuple[str, str]] = field(default_factory=list)
     """Sessions of the two halves."""
@@ -73,7 +73,7 @@ class Twins(Uploads):
 
     @initialize(drawn=st.integers(1, 2**32))
     def begins(self, drawn: int) -> None:
-        """With a reference that has a gross reading, and a neighbour that has none."""
+        """Begins with a reference that has a gross reading, and a neighbour that has none."""
         assume(drawn)
         self.sends("LV-102", 0, None, drawn)
         self.sends("LV-101", 0, list(SLIPS)[drawn % len(SLIPS)], drawn)
@@ -104,7 +104,7 @@ class Twins(Uploads):
 
     @rule(number=NUMBERS, failure=st.sampled_from(list(FAILURES)), drawn=DRAWN)
     def takes_a_failing_recording_back(self, number: int, failure: str, drawn: int) -> None:
-        """In the second half alone."""
+        """Records and withdraws in the second half alone."""
         document = self.world.benches["FL-790"].programmes["in-service"](number)
         faulty, sensor = failing(twin_of(document), failure, np.random.default_rng(drawn))
         if receipt := self.upload(json.dumps(faulty).encode(), "failing.json"):
@@ -113,27 +113,27 @@ class Twins(Uploads):
 
     @rule(which=WHICH, what=st.sampled_from(["withdraw", "accept"]))
     def changes_a_session(self, which: int, what: str) -> None:
-        """In both halves."""
+        """Changes a session in both halves."""
         for id in self.halves.pairs[which % len(self.halves.pairs)]:
             self.tries(f"/sessions/{id}/{what}", BY)
 
     @rule(which=WHICH)
     def chooses_a_reference(self, which: int) -> None:
-        """In both halves."""
+        """Chooses a reference in both halves."""
         for id in self.halves.pairs[which % len(self.halves.pairs)]:
             unit = self.world.get(f"/sessions/{id}")["unit"]
             self.tries(f"/units/{quote(unit)}/reference", BY | {"session": id})
 
     @rule(serial=st.sampled_from(SERIALS), number=NUMBERS, kind=st.sampled_from(["adjustment", "repair", "service"]))
     def services(self, serial: str, number: int, kind: str) -> None:
-        """In both halves."""
+        """Records a service in both halves."""
         for unit in (serial, serial + TWIN):
             new = {"kind": kind, "at": day(number), "by": "R. Lind", "note": "shock"}
             self.tries(f"/units/{quote(unit)}/services", new)
 
 
 def halves_agree(world: World, halves: Halves) -> None:
-    """All that is said of sessions, units, types and stands."""
+    """Compares all that is stated about sessions, units, types and stands."""
     for serial in SERIALS:
         if serial in world.units():
             _units_agree(world, serial, dict(halves.pairs), halves.struck)

@@ -45,7 +45,7 @@ def benches(seed: int) -> dict[str, Bench]:
 
 
 def day(number: int) -> str:
-    """When the session of a number was measured: 45 days after the one before, at different hours."""
+    """Moment at which the session of a number was measured: 45 days after the one before, at different hours."""
     return str(np.datetime64("2022-01-10T08:00:00") + np.timedelta64(45 * number * 24 + number % 9, "h")) + "Z"
 
 

@@ -23,7 +23,7 @@ def written(document: Document, kind: str) -> bytes:
 
 
 class Uploads(Steps):
-    """What a crew sends."""
+    """Uploads of a crew."""
 
     @rule(
         serial=st.sampled_from(BENCHES),
@@ -49,7 +49,7 @@ class Uploads(Steps):
 
     @rule(serial=st.sampled_from(BENCHES), number=NUMBERS, kind=st.sampled_from(list(WRITERS)))
     def sends_again(self, serial: str, number: int, kind: str) -> None:
-        """The same content in two formats is one session."""
+        """Sends the same content in two formats, which must become one session."""
         document = self.measured(serial, number)
         first = self.upload(written(document, "json"), "first.json")
         again = self.upload(written(document, kind), f"again.{kind}")
@@ -101,7 +101,7 @@ class Uploads(Steps):
 
     @rule(serial=st.sampled_from(BENCHES), number=NUMBERS)
     def asks_before(self, serial: str, number: int) -> None:
-        """What is asked of a measurement that is still going on."""
+        """Asks about a measurement that is still going on."""
         content = json.dumps(self.measured(serial, number)).encode()
         for path in ("/plan/missing", "/plan/ready", "/layouts/preview"):
             answer = self.world.ask("POST", f"/api/v1{path}", files={"file": ("begun.json", content)})
@@ -126,7 +126,7 @@ class Uploads(Steps):
         return receipt
 
     def document_of(self, id: str) -> Document | None:
-        """Of a session that came as JSON."""
+        """Document of a session that came as JSON."""
         content = self.world.stored.get(id, b"")
         return dict(json.loads(content)) if content.startswith(b"{") else None
 

@@ -16,7 +16,7 @@ class Works(Steps):
 
     @rule(which=WHICH, scope=st.sampled_from(["unit", "unit-type", "stand"]))
     def accepts_a_cause(self, which: int, scope: str) -> None:
-        """What a session's diagnosis names goes into a model."""
+        """Accepts a cause that a session's diagnosis names into a model."""
         if session := self.some_session(which, "accepted"):
             path = f"/sessions/{session['id']}/diagnosis"
             found = self.world.send(path, method="GET")
@@ -27,7 +27,7 @@ class Works(Steps):
 
     @rule(which=WHICH, level=st.sampled_from(LEVELS))
     def accepts_what_many_show(self, which: int, level: str) -> None:
-        """What a group's diagnosis names goes into a model."""
+        """Accepts causes that a group's diagnosis names into a model."""
         if (name := self.some_group(which, level)) is None:
             return
         path = f"/{level}/{quote(name, safe='')}/diagnosis"

@@ -1,4 +1,4 @@
-"""What the test knows it has done, and the one way in which it talks to the service."""
+"""The test's record of its own actions, and its only channel to the service."""
 
 import json
 import signal
@@ -18,7 +18,7 @@ from tests.patience import LONG
 
 API = "/api/v1"
 MOST = {"sessions": 1000, "units": 1000, "unit-types": 1000, "uploads": 50}
-"""How long a list may be."""
+"""Longest page of a list."""
 ADMIN, SECRET = "a.admin", 30
 """An account, and the characters that a secret has and other words of a command have not."""
 PENDING = "still running"
@@ -26,7 +26,7 @@ PENDING = "still running"
 
 
 class FindError(BaseException):
-    """Something that must never be seen of the service.
+    """Raised for what must never be seen of the service.
 
     No `Exception`: Hypothesis would live the whole life again to say it better.
     """
@@ -53,20 +53,20 @@ class World:
     """Every request that changed something, and its answer's status."""
     counts: Counter[str] = field(default_factory=Counter)
     refused: Counter[str] = field(default_factory=Counter)
-    """Why uploads were not taken."""
+    """Reasons for refused uploads."""
     services: dict[int, tuple[str, dict[str, Any]]] = field(default_factory=dict)
     """Recorded services that count: the unit, and what was said of it, by number."""
     certificates: list[tuple[str, dict[str, Any]]] = field(default_factory=list)
-    """Of stands, as they were recorded: where, and what."""
+    """Certificates of stands as recorded: address and body."""
     tolerances: dict[tuple[str, int], dict[str, Any]] = field(default_factory=dict)
-    """What was set of unit types, by name and revision."""
+    """Tolerances set of unit types, by name and revision."""
     is_dated: bool = False
-    """Whether something was said that holds from then on: other tolerances, a cause in a model."""
+    """Whether something was stated that holds from then on: other tolerances, a cause in a model."""
     is_short: bool = False
-    """Whether what costs much is left out."""
+    """Whether expensive checks are left out."""
     has_accounts: bool = False
     _seen: tuple[Path | None, int] = (None, 0)
-    """How far the log was read."""
+    """Log file and position up to which it was read."""
     _listed: dict[str, list[dict[str, Any]]] = field(default_factory=dict)
     _description: dict[str, Any] = field(default_factory=dict)
 
@@ -82,14 +82,14 @@ class World:
         return answer
 
     def get(self, path: str, **how: Any) -> Any:
-        """What a program reads, for what is there."""
+        """The document of an address that exists, as a program reads it."""
         answer = self.ask("GET", f"{API}{path}", **how)
         if answer.status_code != 200:
             raise FindError(f"GET {path} → {answer.status_code}: {answer.text[:600]}")
         return answer.json()
 
     def get_description(self) -> dict[str, Any]:
-        """What the service says of its operations."""
+        """The service's description of its operations."""
         if not self._description:
             self._description.update(self.ask("GET", "/openapi.json").json())
         return self._description
@@ -100,11 +100,11 @@ class World:
 
     @staticmethod
     def is_pending(answer: httpx.Response) -> bool:
-        """Whether it is to be asked again, because something is being made."""
+        """Whether to ask again, because something is being made."""
         return answer.status_code == 202 or (answer.status_code == 503 and PENDING in answer.text)
 
     def new_log(self) -> str:
-        """What the service has printed since the last look, without its requests."""
+        """Output of the service since the last look, without its requests."""
         path, start = self._seen
         content = self.service.log.read_bytes() if self.service.log.exists() else b""
         start = start if path == self.service.log else 0
@@ -121,7 +121,7 @@ class World:
         self.forget()
 
     def sign_in(self) -> None:
-        """From now on everybody signs in; the test as an admin, with a token."""
+        """Requires everybody to sign in from now on; the test does as an admin, with a token."""
         self.has_accounts = True
         self.journal.append("first account")
         self._command("user", "add", ADMIN, "--role", "admin", *self.service.where)
@@ -150,7 +150,7 @@ class World:
         return self._listed[what]
 
     def sessions(self, *states: str, unit: str | None = None) -> list[dict[str, Any]]:
-        """Those that there are, in some states or in any, of a unit or of all."""
+        """Sessions at hand, in some states or in any, of a unit or of all."""
         return [
             one
             for one in self.listed("sessions")
@@ -162,7 +162,7 @@ class World:
         return [unit["serial"] for unit in self.listed("units")]
 
     def forget(self) -> None:
-        """What was listed is listed anew."""
+        """Forgets the lists, so that they are read anew."""
         self._listed.clear()
 
 

@@ -26,7 +26,7 @@ class Module:
 
     @cached_property
     def texts(self) -> tuple[str, ...]:
-        """Its strings that are no docstrings."""
+        """The module's strings that are no docstrings."""
         nodes = tuple(ast.walk(self.tree))
         bare = {id(node.value) for node in nodes if isinstance(node, ast.Expr)}
         plain = (node.value for node in nodes if isinstance(node, ast.Constant) and id(node) not in bare)
@@ -39,7 +39,7 @@ class Module:
 
 
 def statements(node: ast.AST) -> Iterator[ast.AST]:
-    """Those inside, at every depth, without their expressions, which are most of a tree."""
+    """Statements inside, at every depth, without their expressions, which are most of a tree."""
     for name in ("body", "handlers", "orelse", "finalbody", "cases"):
         for inner in getattr(node, name, ()):
             yield inner

@@ -5,7 +5,7 @@ import ast
 from tests.project.source import PACKAGES, ROOT, Module, modules
 
 MISTAKES = {"Exception", "AssertionError", "AttributeError", "NameError"}
-"""What no input and no store can end in."""
+"""Exceptions that no input and no store can end in."""
 PLACES = {
     "service/kit/guard.py": "the boundary of work beside the requests",
     "service/ingest/hdf5.py": "what h5py raises on damaged files",

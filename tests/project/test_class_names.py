@@ -10,7 +10,7 @@ SEEN_FROM_OUTSIDE = {"Diagnosis", "Finding", "Flag", "Receipt", "Reservation", "
 OF_THE_API = {"Readiness", "Setting", "Signature"}
 """Names in the API's description, which programs may use, that the numerics use for something else."""
 KINDS = {"Kind"}
-"""Of a change through time, and of background work."""
+"""Names used twice: a change through time, and background work."""
 
 
 def test_no_name_is_given_to_two_classes() -> None:

@@ -58,7 +58,7 @@ def shell(commands: Path, address: str, tmp_path: Path) -> Shell:
 
 
 def execute(command: list[str], folder: Path, address: str, first: Path = BIN) -> str:
-    """What a command prints, run in a folder; it must succeed."""
+    """Output of a command, run in a folder; it must succeed."""
     path = f"{first}:{BIN}:{os.environ['PATH']}"
     environment = {**os.environ, "PATH": path, "IMU_HEALTH_SERVER": address, "LANGUAGE": "en"}
     done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)

@@ -26,10 +26,10 @@ NUMBERED = (
     "/api/v1/tokens/",
     "/api/v1/webhooks/",
 )
-"""Where the id is a number."""
+"""Paths whose id is a number."""
 NEEDS_NO_DATABASE = {"/healthz"}
 QUERIES = {"/api/v1/plan": {"unit_type": "RA-6"}}
-"""What makes a route ask the database; a plan for a cone does not."""
+"""Queries that make a route ask the database; a plan for a cone does not."""
 BODIES: dict[str, Any] = {
     "/api/v1/sessions/{id}/diagnosis/accept": {"cause": "bias-ramp", "scope": "unit", "by": "K. Ito"},
     "/api/v1/units/{serial}/diagnosis/accept": {"cause": "beta-eccentricity", "by": "K. Ito"},

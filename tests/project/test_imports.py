@@ -60,13 +60,13 @@ HOMES = {
     "rosbags": r"service\.ingest\.logs\.ros$",
     "structlog": r"service\.(kit\.log|web\.measured)$",
 }
-"""Where a library may be imported."""
+"""Modules in which a library may be imported."""
 ALL = modules(*PACKAGES)
 NAMES = [module.name for module in ALL]
 
 
 def layer(part: str, layers: tuple[set[str], ...]) -> int:
-    """Which line a part stands in; a new part must be given one."""
+    """Layer of a part; a new part must be given one."""
     for number, parts in enumerate(layers):
         if part in parts:
             return number

@@ -11,7 +11,7 @@ from tests.patience import LONG
 
 TESTS = Path(__file__).parents[1]
 PAUSES = {"tests/service/storage/test_turns.py"}
-"""Where a pause of no length lets another thread go on."""
+"""Files in which a pause of no length lets another thread go on."""
 
 
 def calls(word: str) -> Iterator[tuple[str, ast.Call]]:

@@ -1,4 +1,4 @@
-"""What two real recordings say, whatever their errors are stated as."""
+"""Findings in two real recordings, whatever their errors are stated as."""
 
 from dataclasses import replace
 from functools import cache

@@ -16,7 +16,7 @@ SENTENCES = {
     "with one another as at the calibration": "service.judging.words",
     "beyond the tolerance of": "service.judging.words",
 }
-"""Where each is made."""
+"""The module in which each sentence is made."""
 EXAMPLES = ("schemas", "api")
 """The description of the API quotes answers."""
 

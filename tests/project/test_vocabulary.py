@@ -26,7 +26,7 @@ DOCUMENTS = ("README.md", "docs/glossary.md", "docs/reports.md", "docs/tutorial.
 
 @cache
 def read_by_people() -> dict[str, str]:
-    """Everything that people read: templates, strings of the service, sentences of the causes, documents."""
+    """All text that people read: templates, strings of the service, sentences of the causes, documents."""
     templates = list((ROOT / "service").glob("*/templates/*"))
     found = {path.name: path.read_text("utf-8") for path in templates}
     found |= {name: (ROOT / name).read_text("utf-8") for name in DOCUMENTS}

@@ -1,5 +1,6 @@
-"""What the tests of the service share: a service with a flag, the log as programs read it, dates that are worked
-out with little effort, and what is worked out once."""
+"""Fixtures of the service's tests: a service with a flag, the log as programs read it, dates worked out with little
+effort, and results worked out once.
+"""
 
 import io
 import logging
@@ -44,7 +45,7 @@ def flagged(holding: Holding) -> httpx.Client:
 
 @pytest.fixture
 def written() -> Iterator[io.StringIO]:
-    """What the log writes for a program."""
+    """Output of the log for a program."""
     root = logging.getLogger()
     handlers, level = root.handlers[:], root.level
     root.handlers.clear()

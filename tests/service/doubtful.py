@@ -22,8 +22,10 @@ REFERENCE = session_bytes(month=1)
 JUMPED = (REFERENCE, jumped(51.0))
 """A reference, and a session whose A2 jumps by 51 µg of 50 µg allowed, although its mean is within tolerance."""
 SLIGHTLY = (REFERENCE, jumped(14.0))
-"""The same with less than a third of the tolerance."""
+"""A reference, and a session whose A2 jumps by less than a third of the tolerance."""
 MISTAKEN = (REFERENCE, jumped(51.0, EARLY))
-"""The same, so early that the quadratic term takes it up and passes for out of tolerance."""
+"""A reference, and a session whose A2 jumps so early that the quadratic term takes it up and passes for out of
+tolerance.
+"""
 CLAUSE = "the bias of A2 has one step ("
-"""How the reservation of `JUMPED` begins, before its size."""
+"""Beginning of the reservation of `JUMPED`, before its size."""

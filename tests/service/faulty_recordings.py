@@ -14,7 +14,7 @@ BEGINS = 120.0
 SCALE, G = 0.12, 9.80665
 """V per m/s² of every sensor, and m/s²."""
 Spoil = Callable[[Array, Array, np.random.Generator], Array]
-"""From the readings (n,) since a sensor fails, V, and s since then, to what it gives instead."""
+"""Turns the readings (n,) since a sensor fails, V, and s since then, into what it gives instead."""
 SPOILT: Mapping[str, Spoil] = {
     "step": lambda u, t, rng: u + 0.1 * G * SCALE,
     "ramp": lambda u, t, rng: u + 1e-3 * G * SCALE * t,

@@ -22,7 +22,9 @@ SCORE = {"rms": 2e-4, "chi2_per_dof": 3.0, "log_score": -1.0}
 
 
 def earlier_document(**changes: Any) -> dict[str, Any]:
-    """Of a version that held no size against the session before and gave the shape of the first sensor alone."""
+    """A document of a version that held no size against the session before and gave the shape of the first sensor
+    alone.
+    """
     calibration = calibrate(read_session(accelerometer_block())).to_dict()
     finding = {name: value for name, value in JUMP.to_dict().items() if name != "nonlinear_each"}
     document = {

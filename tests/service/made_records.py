@@ -1,4 +1,4 @@
-"""Everything that is derived of a unit's records, as one value that can be compared."""
+"""All that is derived of a unit's records, as one value that can be compared."""
 
 from datetime import UTC, datetime
 from typing import Any
@@ -21,17 +21,17 @@ NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 
 
 def step(why: str = "wrong unit") -> Step:
-    """What an engineer does."""
+    """A step of an engineer."""
     return Step("K. Ito", NOW, why)
 
 
 def way(storage: Storage, at_once: int | None = 20) -> Deriving:
-    """How what follows is derived."""
+    """Options of the derivation that follows."""
     return Deriving(storage.files, 2.0, NOW, at_once)
 
 
 def state_of(storage: Storage, *serials: str) -> dict[str, Any]:
-    """What is known of units, to the last digit; when and under which number it was written down apart."""
+    """The state of units, to the last digit; without times and numbers of writing."""
     with storage.database.reading() as store:
         units = {serial: _unit(store, serial) for serial in serials if Units(store).exists(serial)}
         return units | {"stands": Stands(store).motions()}

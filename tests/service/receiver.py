@@ -26,16 +26,16 @@ class Receiver:
     statuses: list[int] = field(default_factory=list)
     messages: list[Message] = field(default_factory=list)
     held: Event | None = None
-    """Until it is set nothing is answered."""
+    """Event that holds all answers until it is set."""
     _came: Condition = field(default_factory=Condition)
 
     @property
     def url(self) -> str:
-        """Where it listens."""
+        """Address that it listens on."""
         return f"http://{self.host}/hook"
 
     def wait_for(self, count: int) -> list[Message]:
-        """What it got, once that is so much."""
+        """Waits for so many messages, and returns them."""
         with self._came:
             enough = self._came.wait_for(lambda: len(self.messages) >= count, LONG)
         assert enough, f"{len(self.messages)} of {count} messages came"

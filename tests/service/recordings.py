@@ -25,7 +25,7 @@ def manoeuvre(seconds: int) -> Array:
 def recording_document(
     *, seed: int = 9, unit: str = "BA-017", m: int = 6, seconds: int = 240, a3_moved: float = 0.0, still: bool = False
 ) -> Document:
-    """The same sensors as `session_bytes`; ``a3_moved`` is the change of A3's bias in µg."""
+    """A recording of the sensors of `session_bytes`; ``a3_moved`` is the change of A3's bias in µg."""
     sensors = true_sensors(m, bias=1e-3, quadratic=1e-6, tilt=1e-4)
     sensors[2] = replace(sensors[2], bias=sensors[2].bias + a3_moved * MICRO_G)
     rng = np.random.default_rng(seed if unit == "BA-017" else seed + 1000 * crc32(unit.encode()))

@@ -30,7 +30,7 @@ def own_document(**changes: Any) -> Document:
 
 
 def rows_of(document: Document) -> list[list[Any]]:
-    """Its rows in mV, with Russian words for the runs."""
+    """The document's rows in mV, with Russian words for the runs."""
     table = document["table"]
     readings = ([round(1000 * cell, 4) for cell in table[name]] for name in ("A1", "A2", "A3"))
     columns = ([RUNS[run] for run in table["run"]], table["beta_deg"], table["temperature_c"], *readings)
@@ -40,7 +40,7 @@ def rows_of(document: Document) -> list[list[Any]]:
 def text_table(
     document: Document, headings: Sequence[str] = HEADINGS, *, separator: str = ";", decimal: str = ","
 ) -> str:
-    """As a spreadsheet writes it where numbers have a decimal comma."""
+    """The table as a spreadsheet writes it where numbers have a decimal comma."""
     out = StringIO()
     out.write(separator.join(f'"{h}"' if separator in h else h for h in headings) + "\r\n")
     for row in rows_of(document):
@@ -87,5 +87,5 @@ def mat_table(document: Document) -> bytes:
 
 
 def facts_of(document: Document) -> Document:
-    """What no table says."""
+    """Facts that no table states."""
     return {key: value for key, value in document.items() if key not in ("format", "table")}

@@ -8,7 +8,7 @@ SCRIPT = "import sys, os, service; print(os.environ['OPENBLAS_NUM_THREADS'], 'nu
 
 
 def said(**setting: str) -> str:
-    """What a fresh process says of its threads."""
+    """Number of threads that a fresh process asks for, and whether numpy is loaded."""
     environment = {k: v for k, v in os.environ.items() if k != "OPENBLAS_NUM_THREADS"} | setting
     done = subprocess.run([sys.executable, "-c", SCRIPT], env=environment, capture_output=True, text=True, check=True)
     return done.stdout.strip()

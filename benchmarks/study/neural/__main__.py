@@ -71,7 +71,7 @@ def batch(sizes: list[Lesson], rng: np.random.Generator) -> tuple[Design, Array,
 
 
 def by_size(lessons: list[Lesson]) -> list[Lesson]:
-    """Those of one size stacked."""
+    """The lessons of one size, stacked."""
     sizes = sorted({n.free.shape for n in lessons})
     return [jax.tree.map(lambda *x: np.stack(x), *[n for n in lessons if n.free.shape == s]) for s in sizes]
 

@@ -1,4 +1,4 @@
-"""What the network learns from: sessions and effects of the study's generator, noise as fast as it is drawn.
+"""Training data of the network: sessions and effects of the study's generator, noise as fast as it is drawn.
 
 A session is drawn, measured once, read and fitted as in a diagnosis. Effects in it are the generator's, each as the
 difference that it makes to the readings, whitened and freed of what the baseline absorbs; residuals are these times a
@@ -41,13 +41,13 @@ class Lesson(NamedTuple):
 
     design: Design
     prior: Array
-    """(k, p) of what the baseline absorbs, the rows of the stand's constant errors."""
+    """(k, p) rows of the basis that the baseline absorbs for the stand's constant errors."""
     free: Array
     """(m, R) degrees of freedom of every residual."""
     unstated: Array
     """(m,) 1 where the noise is estimated from the residuals."""
     traces: Array
-    """(E, m, R) what each effect leaves at strength 1, standard errors."""
+    """(E, m, R) trace that each effect leaves at strength 1, standard errors."""
     labels: Array
     """(E,) numbers in `log_posterior`; 0 after the last effect."""
     surprise: Array
@@ -55,7 +55,7 @@ class Lesson(NamedTuple):
 
 
 def lesson(rng: np.random.Generator, own: tuple[str, ...], shared: tuple[str, ...]) -> Lesson:
-    """Of a session that holds what some cause needs; drawn anew where no effect shows."""
+    """Draws a session that meets the needs of some cause, with effects; drawn anew where no effect shows."""
     session = draw_session(rng, CATALOGUE[str(rng.choice([*own, *shared]))].needs)
     read = read_session(session_file(session, measure(session, [], rng)[0]))
     residuals = WhitenedResiduals.of(baseline_of(averaged(read)))
@@ -93,7 +93,7 @@ def effect(session: Session, residuals: WhitenedResiduals, cause: str, rng: np.r
 
 
 def traced(session: Session, residuals: WhitenedResiduals, drawn: Effect) -> tuple[Array, float]:
-    """(m, R) what an effect leaves, standard errors, and its strength; 0 where it is as good as absorbed."""
+    """(m, R) trace that an effect leaves, standard errors, and its strength; 0 where it is as good as absorbed."""
     column = (signature(session, drawn) / session.unit.scale)[..., None]
     left, (R, m) = residuals.trace(column)[:, 0], column.shape[:2]
     strength, whole = float(np.linalg.norm(left)), np.linalg.norm(residuals.whitened(column))
@@ -106,7 +106,7 @@ def label(cause: str, sensor: int, m: int, own: tuple[str, ...], shared: tuple[s
 
 
 def filled(whole: Lesson, R: int, m: int) -> Lesson:
-    """With zeros, up to R rows and m sensors."""
+    """The lesson with zeros up to R rows and m sensors."""
     p, F = 5 * m + 3, whole.design.known.shape[-1]
     shapes = Design((m, R, F), (m, R, p), (m, R), (R,), (m, R), (m, R, 5), (m, R))
     design = Design(*(fill(x, shape) for x, shape in zip(whole.design, shapes, strict=True)))

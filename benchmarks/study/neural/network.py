@@ -29,7 +29,7 @@ ROWS = 72
 STEEP = 5.0
 """The strength for which a moved kernel's outputs are averaged over its places."""
 ABSORBED = 1e-4
-"""Of a signature's square: less that the baseline leaves counts as nothing."""
+"""Least share of a signature's square that the baseline must leave for it to count."""
 LAGS = (0.1, 0.4)
 """Time constants of late temperatures, of the session's length."""
 SIGNATURES, HIDDEN = 64, 96
@@ -37,14 +37,14 @@ SIGNATURES, HIDDEN = 64, 96
 
 
 class Design(NamedTuple):
-    """What is known of a session beside its residuals."""
+    """Features of a session beside its residuals."""
 
     known: Array
-    """(m, R, F) of every reading: how it was held, when, how warm; 0 where the file does not say."""
+    """(m, R, F) features of every reading: how it was held, when, how warm; 0 where the file does not say."""
     basis: Array
-    """(m, R, p) of what the baseline absorbs of whitened readings."""
+    """(m, R, p) basis of the part of whitened readings that the baseline absorbs."""
     direction: Array
-    """(m, R) of what the sensors of a row share."""
+    """(m, R) direction that the sensors of a row share."""
     removed: Array
     """(R,) the share of it that whitening takes away."""
     loud: Array
@@ -56,7 +56,7 @@ class Design(NamedTuple):
 
 
 def design_of(residuals: WhitenedResiduals) -> Design:
-    """Of a fitted session on a stand."""
+    """The features of a fitted session on a stand."""
     R, m = residuals.baseline.residual.shape
     direction, removed = residuals.whiten.direction[..., 0], residuals.whiten.removed[:, 0]
     root = residuals.whiten.weight * np.sqrt(1 - (removed * (2 - removed))[:, None] * direction**2)
@@ -93,7 +93,7 @@ def of_rows(setting: Setting) -> Array:
 
 
 def standard(values: Array) -> Array:
-    """Of each column less its mean, in its standard deviation; 0 of a constant."""
+    """Each column less its mean, in its standard deviation; 0 for a constant."""
     spread = values.std(axis=0)
     return (values - values.mean(axis=0)) / np.where(spread > 0, spread, 1.0)
 
@@ -117,7 +117,7 @@ def normal(shape: tuple[int, int], rng: np.random.Generator) -> Array:
 
 
 def log_posterior(w: Weights, design: Design, z: Array, xp: ModuleType = np) -> Array:
-    """(d, n, 1 + m·c + C) of sound, of c causes of each sensor, sensor by sensor, and of C causes that all share.
+    """(d, n, 1 + m·c + C) log posterior: sound, c causes of each sensor, sensor by sensor, C causes that all share.
 
     ``z`` (d, m, n, R) whitened residuals; the design has a leading axis d.
     """
@@ -134,20 +134,20 @@ def log_posterior(w: Weights, design: Design, z: Array, xp: ModuleType = np) -> 
 
 
 class Filters(NamedTuple):
-    """What signatures are matched to."""
+    """Filters that signatures are matched to."""
 
     v: Array
     """(d, m, n, R) residuals weighted by the inverse of their covariance."""
     taken: Array
-    """(d, m, R, p) what the baseline takes."""
+    """(d, m, R, p) basis of the part that the baseline absorbs."""
     shared: Array
-    """(d, m, R, 1) what the sensors of a row share."""
+    """(d, m, R, 1) direction that the sensors of a row share."""
     own: Array
-    """(d, m, R, 5) as in `Design`."""
+    """(d, m, R, 5) orthonormal basis of the part that each sensor's own parameters absorb."""
 
     @classmethod
     def of(cls, design: Design, z: Array, xp: ModuleType) -> "Filters":
-        """As in `log_posterior`."""
+        """The filters, from arguments as in `log_posterior`."""
         removed, direction = design.removed[:, None, :, None], design.direction[..., None]
         both = xp.concatenate([z.swapaxes(-1, -2), design.basis], axis=-1)
         size = 1 / xp.sqrt(1 - removed * (2 - removed) * direction**2)
@@ -201,10 +201,10 @@ def bent(x: Array, xp: ModuleType) -> Array:
 
 
 class Answer(NamedTuple):
-    """What the network says of a session."""
+    """The network's answer to a session."""
 
     log_odds: float
-    """That something acts."""
+    """Log odds that something acts."""
     cause: str
     """The likeliest, if something does."""
     sensor: int | None = None
@@ -212,7 +212,7 @@ class Answer(NamedTuple):
 
 
 def answer(file: Path, residuals: WhitenedResiduals) -> Answer:
-    """By weights as ``python -m benchmarks.study.neural`` writes them."""
+    """The answer by weights as ``python -m benchmarks.study.neural`` writes them."""
     w, m = weights(file), residuals.baseline.residual.shape[1]
     z = residuals.z[: residuals.baseline.residual.size].reshape(-1, m).T
     found = log_posterior(w, Design(*(x[None] for x in design_of(residuals))), z[None, :, None])[0, 0]
@@ -225,7 +225,7 @@ def answer(file: Path, residuals: WhitenedResiduals) -> Answer:
 
 @lru_cache
 def weights(file: Path) -> Weights:
-    """With the names of the causes and how they were learned."""
+    """The weights, with the names of the causes and the record of the training."""
     with np.load(file) as stored:
         return dict(stored)
 

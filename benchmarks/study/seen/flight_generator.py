@@ -17,7 +17,7 @@ from scipy.spatial.transform import Rotation
 Array = NDArray[np.float64]
 G = 9.81
 APART = np.radians(15.0)
-"""Between any two sensors as they lie in parity: nearer ones are hardly told apart by anything."""
+"""Least angle between any two sensors as they lie in parity: nearer ones are hardly told apart by anything."""
 MEDIAN = 0.455
 """Median of the square of a standard normal number."""
 LEAST_SEEN = 0.15
@@ -75,7 +75,7 @@ class Flight:
     unit: Unit
     rate: float
     inputs: Array
-    """(R, m) what every sensor feels and adds, m/s², unlimited and without its own white noise."""
+    """(R, m) inputs of every sensor with its own errors, m/s², unlimited and without its own white noise."""
     noise: Array
     """(R, m) m/s²."""
     lost: NDArray[np.bool_]

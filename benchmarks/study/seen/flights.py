@@ -48,7 +48,7 @@ def judged(flight: Flight, known: Calibration, faults: tuple[Fault, ...], rng: n
 
 
 def seen(fault: Fault, since: float, result: ParityResult, *, near: float = NEAR) -> Seen:
-    """How the first fault that is said, of the right sensor if there is one, agrees with the one put in."""
+    """Compares the first fault that is named, of the right sensor if there is one, with the one put in."""
     names = {f"A{k + 1}" for k in (fault.sensor, fault.other) if k is not None}
     mine = [said for said in result.faults if said.sensor in names] or list(result.faults)
     if not mine:

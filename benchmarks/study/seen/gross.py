@@ -50,7 +50,7 @@ KINDS: dict[str, Callable[[np.random.Generator], Case]] = {
 
 @dataclass(frozen=True)
 class Outcome:
-    """Of one session."""
+    """Outcome of one session."""
 
     identifiable: bool
     named: bool
@@ -106,7 +106,7 @@ def set_aside(calibration: Calibration) -> tuple[set[tuple[int, str]], set[str]]
 
 
 def inside(case: Case, calibration: Calibration) -> tuple[bool, ...]:
-    """Whether what is true lies within U, of every scale factor and bias that the session tells."""
+    """Whether the truth lies within U, for every scale factor and bias that the session determines."""
     found = []
     for i, name in enumerate(case.truth.names):
         sensor = calibration.sensor(name)
@@ -138,7 +138,7 @@ def line(kind: str, n: int, seed: int, looks: bool) -> list[str]:
 
 
 def share(found: list[bool]) -> str:
-    """Per cent, with the half width of its 95 % interval."""
+    """Share in per cent, with the half width of its 95 % interval."""
     if not found:
         return "–"
     n, p = len(found), float(np.mean(found))

@@ -32,7 +32,7 @@ class Truth:
     """(m,) reading units of the full range."""
 
     def file(self) -> dict[str, Any]:
-        """As JSON has it."""
+        """The session file as JSON has it."""
         table = dict(self.document["table"])
         for i, name in enumerate(self.names):
             table[name] = self.readings[:, i].tolist()
@@ -72,7 +72,9 @@ def nominal_axes(m: int, rng: np.random.Generator) -> Array:
 
 
 def misaligned(axes: Array, rng: np.random.Generator, size: float) -> Array:
-    """Without a net turn against ``axes``, as orientations cannot tell one."""
+    """The axes misaligned at random by ``size``, without a net turn against ``axes``, as orientations cannot show
+    one.
+    """
     moved = unit(axes + size * rng.standard_normal(axes.shape))
     U, _, Vt = np.linalg.svd(axes.T @ moved)
     return moved @ (U @ np.diag([1, 1, np.linalg.det(U @ Vt)]) @ Vt).T
@@ -117,7 +119,7 @@ def stand(rng: np.random.Generator) -> Truth:
 
 
 def sensors(names: tuple[str, ...], axes: Array, scale: float) -> list[dict[str, Any]]:
-    """As a session file describes them."""
+    """The sensors as a session file describes them."""
     return [
         {"name": name, "nominal_axis": axis.tolist(), "nominal_scale": scale, "reading_unit": "V"}
         for name, axis in zip(names, axes, strict=True)

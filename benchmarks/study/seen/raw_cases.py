@@ -44,14 +44,14 @@ class World:
     time: Array
     """(R,) s."""
     counts: Array
-    """(R, 6) with their fractions; whole in files of counts."""
+    """(R, 6) counts with their fractions; whole in files of counts."""
     position: Array
-    """(R,) of the rest, −1 between."""
+    """(R,) number of the rest, −1 between."""
 
 
 @dataclass(frozen=True)
 class Case:
-    """What is written."""
+    """Content of a raw file."""
 
     world: World
     rng: np.random.Generator
@@ -160,7 +160,7 @@ def restarted(case: Case) -> Case:
 
 
 def milliseconds(case: Case) -> Case:
-    """Under seconds."""
+    """Writes milliseconds under the name of seconds."""
     return replace(case, time=1e3 * case.time)
 
 
@@ -209,11 +209,11 @@ FAULTS: dict[str, Fault] = {
     "wild samples": wild,
     "doubled rows": doubled,
 }
-"""By name: sixteen kinds, two of them in two places."""
+"""Faults by name: sixteen kinds, two of them in two places."""
 
 
 def sensors(unit_scale: bool) -> list[Document]:
-    """As a file declares them, in counts or in SI."""
+    """The sensors as a file declares them, in counts or in SI."""
     return [
         {
             "name": name,
@@ -236,7 +236,7 @@ def metadata(case: Case) -> Document:
 
 
 def columns(case: Case) -> dict[str, list[float | None]]:
-    """By name."""
+    """Columns by name."""
     named = {"time_s": case.time, **dict(zip(NAMES, case.values.T, strict=True))}
     table = {name: [None if np.isnan(x) else float(x) for x in column] for name, column in named.items()}
     return table | ({"position": case.world.position.tolist()} if case.labelled else {})

@@ -38,7 +38,7 @@ class DrawnFile:
 
 
 def read_session(content: bytes, path: str) -> CalibrationSession:
-    """As the service reads it; a long log part by part."""
+    """Reads the session as the service does; a long log part by part."""
     if path != "long csv":
         found = read(content, path)
     else:
@@ -95,7 +95,7 @@ OUTCOMES = ("right", "by name", "refused", "named, numbers off", "SILENTLY WRONG
 
 
 def table(n: int, seed: int) -> str:
-    """How many came out how, fault by fault."""
+    """Table of the numbers of outcomes, fault by fault."""
     found = list(draws(n, seed))
     lines = [
         f"| fault | {' | '.join(OUTCOMES)} | kinds | worst, U |",

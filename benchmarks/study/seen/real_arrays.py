@@ -80,7 +80,7 @@ def drawn(seed: int, k: int) -> tuple[CalibrationSession, Calibration, np.random
 
 def judged(recording: CalibrationSession, reference: Calibration, flight: Flight, fault: Fault,
            rng: np.random.Generator) -> ParityResult:  # fmt: skip
-    """What parity says of the recording with a fault."""
+    """Parity's result on the recording with a fault."""
     return parity_check(replace(recording, readings=flight.readings((fault,), rng)), reference)
 
 

@@ -1,4 +1,4 @@
-"""Which still orientations to add to a set so that it identifies everything, from the block's nominal axes.
+"""Chooses still orientations that complete a set so that it identifies everything, from the block's nominal axes.
 
 An orientation's share of the information is the Schur complement of its own two unknown turns; shares add up.
 Orientations are taken one by one from a fine grid of directions, each the one that raises ln|information + plausible
@@ -44,7 +44,7 @@ def planned_rows(
 
 
 def shares(rows: ModelRows, unknowns: Unknowns) -> Array:
-    """(R, 5 m, 5 m) what each orientation adds to the information, dimensionless elements."""
+    """(R, 5 m, 5 m) information that each orientation adds, dimensionless elements."""
     linear = linearise(rows, unknowns)
     R, m = rows.y.shape
     full = np.zeros((R, m, 5, m, 5))

@@ -1,4 +1,5 @@
-"""What orientations determine: rank, weakest direction, covariance. Needs no readings, so planning uses it too.
+"""The information in a set of orientations: rank, weakest direction, covariance. Planning uses it too, as it needs no
+readings.
 
 Without stated directions every common turn of axes and orientations fits the same, so the frame is held by the nominal
 axes: the estimated axes show no net turn against them, Σ e_nominal,i × e_i = 0 (the condition under which the Kabsch
@@ -19,7 +20,7 @@ ROUNDING = 1e-12
 `calibration.observability`, because eliminating the orientations takes a difference of large numbers."""
 
 NEXT, LAST = [1, 2, 0], [2, 0, 1]
-"""Of x, y, z in turn: a × b is a[NEXT]·b[LAST] − a[LAST]·b[NEXT]."""
+"""Cyclic indices for cross products: a × b is a[NEXT]·b[LAST] − a[LAST]·b[NEXT]."""
 
 QUADRATIC = 2
 """Place of the quadratic term among a sensor's five elements."""
@@ -36,7 +37,7 @@ class Information:
     unseen: Array
     """(P, F − rank) eigenvectors that it does not."""
     variances: Array
-    """(rank,) of the seen ones, dimensionless."""
+    """(rank,) variances along the seen directions, dimensionless."""
     weakest: tuple[int, float]
     """Element that leads the least known direction, and that direction's one sigma."""
 
@@ -85,7 +86,7 @@ def unseen_below(values: Array) -> float:
 
 
 def information(rows: ModelRows, unknowns: Unknowns, quadratic: bool, linear: Linear | None = None) -> Information:
-    """What orientations ``unknowns.directions`` tell of sensors like its own under the noise of ``rows``.
+    """The information of orientations ``unknowns.directions`` on such sensors, under the noise of ``rows``.
 
     Only `rows.sigma`, `rows.prior` and `rows.nominal_axes` are used: the readings play no part. ``linear`` is the
     linearisation there, where it is at hand.

@@ -1,4 +1,4 @@
-"""From the search's elements to SI: covariance, what is observable, and what is known only together."""
+"""Converts the search's elements to SI: covariance, observability, and combinations that are known only together."""
 
 from dataclasses import dataclass
 
@@ -19,7 +19,7 @@ Indices = NDArray[np.intp]
 
 @dataclass(frozen=True, eq=False)
 class Knowledge:
-    """What is known of m sensors. P = 5 m, R rows."""
+    """The knowledge of m sensors. P = 5 m, R rows."""
 
     parameters: SensorParameters
     covariance: Array
@@ -38,7 +38,7 @@ class Knowledge:
 
 @dataclass(frozen=True, eq=False)
 class Determined:
-    """What the orientations tell of the elements ln K, b/g, c·g and the axis' turns of m sensors. P = 5 m."""
+    """Knowledge of the elements ln K, b/g, c·g and the axis' turns of m sensors, from the orientations. P = 5 m."""
 
     covariance: Array
     """(P, P) dimensionless, of the part that is seen."""
@@ -47,7 +47,7 @@ class Determined:
     observable: Array
     """(P,) bool."""
     certain: bool
-    """Whether the noise is known, so that the covariance is one."""
+    """Whether the noise is known, so that the covariance can be given."""
 
 
 def of_accelerometers(solution: Solution, sigma: Array, scale: Array, g: float) -> Knowledge:
@@ -83,7 +83,7 @@ def of_accelerometers(solution: Solution, sigma: Array, scale: Array, g: float) 
 
 
 def to_bias(offset: Array, gain: Array) -> Array:
-    """(5 m, 5 m) from the search's elements to ln K, b/g, c·g and the axis' turns: b/g = o·exp(−λ).
+    """(5 m, 5 m) transformation of the search's elements to ln K, b/g, c·g and the axis' turns: b/g = o·exp(−λ).
 
     offset, gain : (m,) o and exp(λ), dimensionless.
     """
@@ -107,7 +107,7 @@ def observed(covariance: Array, unseen: Array, free: Array) -> Array:
 
 
 def combinations(i: int, p: SensorParameters, determined: Determined, factors: Array) -> tuple[KnownCombination, ...]:
-    """What is known of sensor i's lost scale, bias and quadratic: the combinations that unseen directions leave alone.
+    """The known combinations of sensor i's lost scale, bias and quadratic: those that no unseen direction changes.
 
     ``factors`` (P,) take the dimensionless elements to SI.
     """

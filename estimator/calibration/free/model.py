@@ -37,7 +37,7 @@ WEIGHTLESS = 100.0
 
 @dataclass(frozen=True, eq=False)
 class ModelRows:
-    """What was measured, dimensionless. R orientations, m accelerometers."""
+    """The measurements, dimensionless. R orientations, m accelerometers."""
 
     y: Array
     """(R, m) readings over nominal scale times g, nominal offset taken off."""
@@ -67,13 +67,13 @@ class ModelRows:
         return int(np.maximum(told - 2, 0).sum())
 
     def weighted(self, sigma: Array) -> "ModelRows":
-        """The same readings under another noise, dimensionless: (R, m) or anything that broadcasts to it."""
+        """The measurements with another noise, dimensionless: (R, m) or anything that broadcasts to it."""
         return replace(self, sigma=np.broadcast_to(sigma, self.y.shape))
 
 
 @dataclass(frozen=True, eq=False)
 class Unknowns:
-    """What the search looks for, at one point of its way: parameters of m sensors and R orientations; dimensionless."""
+    """The unknowns at one point of the search: parameters of m sensors and R orientations; dimensionless."""
 
     log_scale: Array
     """(m,) λ"""
@@ -84,7 +84,7 @@ class Unknowns:
     axes: Array
     """(m, 3) unit vectors, block axes."""
     directions: Array
-    """(R, 3) of the specific force, unit vectors, block axes."""
+    """(R, 3) directions of the specific force, unit vectors, block axes."""
 
     @cached_property
     def axis_tangents(self) -> Array:
@@ -113,7 +113,7 @@ class Unknowns:
 
 
 def predicted(unknowns: Unknowns) -> Array:
-    """(R, m) what the sensors should read, relative to nominal scale times g."""
+    """(R, m) readings predicted by the model, relative to nominal scale times g."""
     s = unknowns.directions @ unknowns.axes.T
     return np.exp(unknowns.log_scale) * (s + unknowns.quadratic * s * s) + unknowns.offset
 
@@ -129,7 +129,7 @@ class Linear:
     """One linearisation, in units of the readings' sigmas."""
 
     residual: Array
-    """(R, m) in sigmas."""
+    """(R, m) residuals in sigmas."""
     local: Array
     """(R, m, 5) derivative of each reading by its own sensor's parameters."""
     shared: Array

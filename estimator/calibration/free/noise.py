@@ -41,7 +41,7 @@ ROUNDS = 25
 SETTLED = 1e-3
 """Relative change of the noise between rounds below which it has settled: far below what residuals tell of a sigma."""
 MOST_ITERATIONS = 600
-"""Of all searches while the noise settles."""
+"""Most iterations of all searches together while the noise settles."""
 
 TINY = float(np.finfo(float).tiny)
 """Keeps readings without any residual from a division by nothing."""
@@ -55,14 +55,14 @@ LEAST_FREEDOM = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class ProjectedNoise:
-    """What the fit takes of readings of variance one. R orientations, m sensors, F directions seen."""
+    """The parts of readings of variance one that the fit absorbs. R orientations, m sensors, F directions seen."""
 
     turns: Array
-    """(R, m, m) S D⁻¹Sᵀ, what the orientation's own turns take."""
+    """(R, m, m) S D⁻¹Sᵀ, the part absorbed by the orientation's own turns."""
     lean: Array
-    """(R, m, F) how the fitted value of each reading leans on the seen directions."""
+    """(R, m, F) dependence of the fitted value of each reading on the seen directions."""
     residual: Array
-    """(R, m) in sigmas."""
+    """(R, m) residuals in sigmas."""
     takes_part: Array
     """(R, m) bool"""
 
@@ -74,7 +74,7 @@ class ProjectedNoise:
 
     @property
     def shares(self) -> Array:
-        """(m, F, F) what each sensor's readings tell of the seen directions; together they tell the identity."""
+        """(m, F, F) information of each sensor's readings on the seen directions; the sum is the identity."""
         by_sensor = np.swapaxes(self.lean, 0, 1)
         return np.swapaxes(by_sensor, 1, 2) @ by_sensor
 
@@ -89,7 +89,7 @@ class ProjectedNoise:
 
 
 def projected(rows: ModelRows, unknowns: Unknowns, knowledge: Information) -> ProjectedNoise:
-    """What the fit takes of the readings, under the noise of ``rows``."""
+    """Splits the readings into absorbed parts and residuals, under the noise of ``rows``."""
     linear = linearise(rows, unknowns)
     through = (linear.shared[:, :, None, :] @ linear.inverse[:, None])[:, :, 0, :]
     root = scaled(knowledge)

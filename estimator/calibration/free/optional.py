@@ -1,4 +1,4 @@
-"""Whether the quadratic terms are estimated, and from which of several minima.
+"""Decides whether the quadratic terms are estimated, and which of several minima is taken.
 
 χ² of unknown orientations has more than one minimum once the quadratic terms are free: with few orientations they trade
 against scale and bias along a valley. Every minimum is therefore looked for from several points: where the search came
@@ -68,8 +68,9 @@ def candidates(rows: ModelRows, stated: bool, quadratic: bool | None) -> list[So
 
 
 def agreed(rows: ModelRows, judged: Callable[[Solution], bool]) -> bool:
-    """What is judged of `solve` under stated noise; where it is the same with the quadratic term as without, nobody
-    needs to know which deserves it."""
+    """The verdict of ``judged`` on the solution that `solve` would give under stated noise. Where it is the same with
+    the quadratic terms and without, the choice between the two is not made.
+    """
     plain, *extended = candidates(rows, True, None)
     of_plain = judged(plain)
     if not extended or judged(extended[0]) == of_plain:
@@ -78,7 +79,9 @@ def agreed(rows: ModelRows, judged: Callable[[Solution], bool]) -> bool:
 
 
 def affordable(plain: Solution, stated: bool) -> bool:
-    """Whether the terms would be determined and leave degrees of freedom to judge by: one, or to tell the noise."""
+    """Whether the terms would be determined and leave enough degrees of freedom: one, or enough to estimate the
+    noise.
+    """
     wanted = information(plain.rows, plain.unknowns, quadratic=True)
     remaining_dof = plain.dof + plain.knowledge.rank - wanted.rank
     return wanted.full and remaining_dof >= (1 if stated else WANTED)
@@ -108,12 +111,12 @@ def starts_around(solution: Solution) -> list[Unknowns]:
 
 
 def without_terms(unknowns: Unknowns) -> Unknowns:
-    """The same without quadratic terms."""
+    """The unknowns without quadratic terms."""
     return replace(unknowns, quadratic=np.zeros_like(unknowns.quadratic))
 
 
 def is_supported(extended: Solution, plain: Solution, stated: bool) -> bool:
-    """Whether the quadratic terms are plainly there, or known well at the minimum that belongs to them."""
+    """Whether the quadratic terms are significant, or well known at their own minimum."""
     used = explained(extended) if stated else extended
     if not used.knowledge.full or not used.converged:
         return False

@@ -16,13 +16,13 @@ from estimator.session import Array, CalibrationSession
 from estimator.significance import p_value
 
 METHOD = "arbitrary-orientations/maximum-likelihood"
-"""As results name it."""
+"""Name of the method in results."""
 
 
 def fit_of_accelerometers(
     solution: Solution, used: Solution, known: Knowledge, stated: bool, element_names: tuple[str, ...]
 ) -> Fit:
-    """How well the accelerometers fit.
+    """Quality of fit of the accelerometers.
 
     Parameters
     ----------
@@ -49,7 +49,9 @@ def fit_of_accelerometers(
 
 
 def more_positions(solution: Solution) -> int:
-    """Orientations, unlabelled and of any direction, that tell all parameters and the noise to `WANTED` freedom."""
+    """Number of orientations, unlabelled and of any direction, that determine all parameters and the noise to `WANTED`
+    degrees of freedom.
+    """
     missing = solution.knowledge.parameters - solution.knowledge.rank
     return positions_to_add(-missing, solution.rows.y.shape[1] - 2)
 
@@ -63,7 +65,7 @@ def to_add(solution: Solution) -> tuple[tuple[float, float, float], ...]:
 
 
 def fit_of_gyros(gyros: GyroBiases, element_names: tuple[str, ...]) -> Fit:
-    """How well one bias a gyro fits, the Earth's rate counted as noise; for a block of gyros alone."""
+    """Quality of fit of one bias a gyro, the Earth's rate counted as noise; for a block of gyros alone."""
     worst = int(np.argmax(gyros.sigma))
     return Fit(
         chi2=gyros.chi2,
@@ -84,7 +86,7 @@ def fit_of_gyros(gyros: GyroBiases, element_names: tuple[str, ...]) -> Fit:
 def sensor_result(
     i: int, known: Knowledge, sigma: Array, turns: Array, session: CalibrationSession
 ) -> SensorCalibration:
-    """What the session says of sensor i; ``sigma`` (m, 5), SI; ``turns`` (m, 3, 2), the axes' tangents, no unit."""
+    """The result of sensor i; ``sigma`` (m, 5), SI; ``turns`` (m, 3, 2), the axes' tangents, no unit."""
     p, sensor, elements = known.parameters, session.sensors[i], slice(5 * i + 3, 5 * i + 5)
     seen = [bool(s) for s in known.observable[i]]
     values = (float(p.scale[i]), float(p.bias[i]), float(p.quadratic[i]))
@@ -114,7 +116,7 @@ def estimate(value: float, sigma: float, freedom: float) -> Estimate:
 
 
 def report(session: CalibrationSession, known: Knowledge, fit: Fit, gauge: str) -> Calibration:
-    """Everything that is known, named."""
+    """The calibration of all that is known, named."""
     sigma = np.sqrt(np.diagonal(known.covariance)).reshape(-1, 5)
     turns = tangents(known.parameters.axis)
     return Calibration(

@@ -1,4 +1,4 @@
-"""Whether rows in unknown orientations can tell anything, and which sensors they can tell it of."""
+"""Checks whether rows in unknown orientations can calibrate anything, and which sensors."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,7 +37,7 @@ def check(session: CalibrationSession) -> None:
 
 
 def classified(session: CalibrationSession) -> tuple[Mask, Mask, Mask]:
-    """Which sensors (m,) are accelerometers that answer to turns, accelerometers that do not, and gyros.
+    """Masks (m,) of accelerometers that respond to turns, accelerometers that do not, and gyros.
 
     Raises
     ------
@@ -80,7 +80,7 @@ def classified(session: CalibrationSession) -> tuple[Mask, Mask, Mask]:
 
 
 def too_few_axes(session: CalibrationSession, live: Mask, gyro: Mask) -> str:
-    """Why the accelerometers cannot measure a vector."""
+    """The reason why the accelerometers cannot measure a vector, as a message."""
     silent = [s.name for s, dead in zip(session.sensors, ~live & ~gyro, strict=True) if dead]
     reason = say(" ({silent} did not respond to the rotation)", silent=joined(", ", silent)) if silent else ""
     return say(
@@ -92,7 +92,7 @@ def too_few_axes(session: CalibrationSession, live: Mask, gyro: Mask) -> str:
 
 
 def advice(rows: int) -> str:
-    """What to add to ``rows`` orientations."""
+    """The orientations to add to ``rows``, as a message."""
     return say(
         "add at least {number} so that there are {total} or more still orientations spread "
         "over the whole sphere, tilted about all three axes, or label six positions with their "

@@ -16,7 +16,7 @@ from estimator.calibration.free.schedule import Mask
 from estimator.session import Array
 
 MAX_ITERATIONS = 200
-"""Of one search; three are usual, and one that has not ended by then says so."""
+"""Most iterations of one search; three are usual, and one that has not ended by then has `converged` False."""
 
 CONVERGED = 1e-10
 """Expected fall of χ² below which the search has ended: steps of 1e-5 standard errors."""
@@ -28,7 +28,9 @@ LEAST_DAMPING = 1e-12
 """Relative to the largest information: less is rounding, and damping must be able to grow back in a few steps."""
 
 FIRST_DAMPING = 1e-4
-"""The same, at the start, which is good to a few per cent: nearly a Gauss–Newton step."""
+"""Damping at the start, relative to the largest information. The start is good to a few per cent: nearly a Gauss–Newton
+step.
+"""
 
 LONGEST = 0.5
 """Dimensionless; no element moves further in one step; a turn along a tangent means little beyond."""
@@ -45,10 +47,10 @@ the right-hand side along these (F,)."""
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """Where the search ended."""
+    """The end of a search."""
 
     rows: ModelRows
-    """With the noise that was used."""
+    """The rows, with the noise that was used."""
     unknowns: Unknowns
     quadratic: bool
     """Whether the quadratic term was estimated."""
@@ -64,7 +66,7 @@ class Solution:
 
     @property
     def knowledge(self) -> Information:
-        """What the readings tell of the parameters."""
+        """Information of the readings on the parameters."""
         return self.learned()
 
     @property

@@ -1,4 +1,4 @@
-"""Where the search starts: linear estimates, good to a few per cent, from readings alone or with stated directions.
+"""Starting points of the search: linear estimates, good to a few per cent, with or without stated directions.
 
 Without directions: the readings lie on an ellipsoid in a three-dimensional affine subspace of the m readings. The
 subspace is found by principal components, the ellipsoid by linear least squares about a sphere (the least change of
@@ -18,11 +18,12 @@ PLAIN = 0.02
 misalignment of a real block, above the noise of a poor one."""
 
 SLIGHT = (0.05, 0.005, 0.0005)
-"""The same for the quadric, tried in turn: below it the sphere's shape is kept. Few orientations need a small one
-when they are precise and a large one when they are plain."""
+"""Singular values of the quadric below this part of the largest carry noise; tried in turn, and below it the sphere's
+shape is kept. Few orientations need a small one when they are precise and a large one when they are plain.
+"""
 
 LEAST_GAIN = 1e-6
-"""Of nominal; a sensor that answers less is dead, and its scale's logarithm must stay finite."""
+"""Least gain relative to nominal; a sensor below it is dead, and its scale's logarithm must stay finite."""
 
 TINY = float(np.finfo(float).tiny)
 """Keeps a division by nothing finite."""
@@ -32,7 +33,7 @@ FLAT = 1e-3
 
 
 def start(rows: ModelRows) -> Unknowns:
-    """Of `starts`, the one that fits best."""
+    """The start that fits best, out of `starts`."""
     return starts(rows)[0]
 
 

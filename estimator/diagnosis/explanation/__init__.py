@@ -1,1 +1,1 @@
-"""What was found, for people: rivals, sensor or stand, limits, next measurement, extended model, gain."""
+"""The findings for people: rivals, sensor or stand, limits, next measurement, extended model, gain."""

@@ -50,7 +50,7 @@ def calibrate_extended(session: CalibrationSession, causes: Sequence[Accepted]) 
 
 
 def places(session: CalibrationSession, sensors: Sequence[str]) -> list[tuple[int, ...]]:
-    """Where a cause acts, as its shapes say it: sensor by sensor, or nowhere in particular."""
+    """Places of a cause, as in its shapes: sensor by sensor, or one empty place for no sensor in particular."""
     names = [s.name for s in session.sensors]
     return [(names.index(s),) for s in sensors if s in names] if sensors else [()]
 

@@ -66,7 +66,7 @@ def limit(state: SearchState, cause: Cause, traces: Traces | None) -> Limit:
 
 
 def missing(state: SearchState, cause: Cause) -> str:
-    """What a cause needs and the session lacks."""
+    """Names the needs of a cause that the session does not meet."""
     lacking = sorted(n for n in cause.needs if not state.baseline.setting.has(n))
     if state.residuals.change is None and "history" in cause.needs:
         lacking.append("history")

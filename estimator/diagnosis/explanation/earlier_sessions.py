@@ -1,4 +1,4 @@
-"""What naming the causes is worth on another session: amplitudes found here, held against that one's residuals.
+"""The benefit of the named causes on another session: amplitudes found here, tested against that session's residuals.
 
 The latest earlier session keeps its own parameters, fitted anew with and without; the effect with its amplitude and
 covariance V comes from this session alone. The residuals of the baseline there, z, are of unit covariance without the
@@ -35,7 +35,7 @@ class Effect:
 
     @property
     def absent(self) -> "Effect":
-        """The same with no effect."""
+        """The effect with amplitude and covariance zero."""
         return replace(self, amplitude=0 * self.amplitude, covariance=0 * self.covariance)
 
 
@@ -77,7 +77,7 @@ def effect_in(
 
 
 def are_new(state: SearchState, fitted: Amplitudes) -> tuple[bool | None, ...]:
-    """Whether each finding came since the latest earlier session; None without history or for what moved since.
+    """Whether each finding came since the latest earlier session; None without history, or for changes since then.
 
     The readings of that session say it: with the effect or without. Where they are undecided, it is how the
     parameters changed.
@@ -101,7 +101,7 @@ def is_new(scored: Scored, residuals: WhitenedResiduals, effect: Effect | None) 
 
 
 def predicted(residuals: WhitenedResiduals, effect: Effect) -> Score:
-    """How well an effect predicts the readings of a session."""
+    """Scores the prediction of a session's readings by an effect."""
     trace = residuals.trace(effect.columns)
     rest = residuals.z - trace @ effect.amplitude
     inner = np.eye(trace.shape[1]) + effect.covariance @ (trace.T @ trace)

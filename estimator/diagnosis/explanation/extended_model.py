@@ -37,7 +37,7 @@ class Amplitudes:
     covariance: Array
     """(f, f) SI."""
     slices: tuple[slice, ...]
-    """Of each finding."""
+    """Places of each finding's amplitudes."""
 
 
 def amplitudes(state: SearchState) -> Amplitudes:

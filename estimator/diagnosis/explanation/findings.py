@@ -1,4 +1,4 @@
-"""From the search to findings that people read."""
+"""Turns the result of the search into findings that people read."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -24,7 +24,7 @@ from estimator.message import joined, say
 from estimator.session import ACCELEROMETER
 
 UNEXPLAINED = "unexplained"
-"""Among alternatives: what acts may be none of the catalogue's causes."""
+"""Alternative for an effect that may be none of the catalogue's causes."""
 
 
 def findings(state: SearchState, fitted: Amplitudes, new: Sequence[bool | None]) -> tuple[Finding, ...]:
@@ -109,7 +109,7 @@ def excess_finding(state: SearchState, cause: Cause, excess: ExcessVariance) -> 
 
 
 def structures(state: SearchState) -> tuple[Structure, ...]:
-    """Unexplained structure and where it lives."""
+    """Unexplained structure, with its place."""
     patterns = [
         Structure(
             where=pattern_description(state, f),
@@ -133,8 +133,9 @@ def structures(state: SearchState) -> tuple[Structure, ...]:
 
 
 def pattern_description(state: SearchState, detection: Detection) -> str:
-    """A pattern's own words, on a sensor of a shared course beside that; of a name that was taken back, that it does
-    not hold."""
+    """The words of a pattern, on a sensor of a shared course beside that; for a name that was taken back, that it does
+    not hold.
+    """
     if not isinstance(detection.best.cause, Pattern):
         return say("as of {name}, which does not hold", name=detection.best.cause.name)
     where = detection.best.cause.where(detection.best.shape)
@@ -170,7 +171,7 @@ def _noise_scale(state: SearchState, claim: NoiseClaim) -> NoiseScale:
 
 
 def beyond_noise(state: SearchState) -> Iterator[Structure]:
-    """Kinds of sensor that scatter as no noise does."""
+    """The structures of kinds of sensor that scatter as no noise does."""
     for scale in noise_scales(state):
         if scale.factor > BEYOND_NOISE:
             where = say(
@@ -192,14 +193,14 @@ def unlike_noise(state: SearchState, unlike: UnlikeNoise) -> Structure:
 
 
 def place(course: Autocorrelation) -> str:
-    """Where a residual lives that fits no pattern, in words."""
+    """The place of a residual that fits no pattern, in words."""
     if course.plain:
         return say("smooth along {order}, in no known pattern", order=course.order)
     return say("larger than stated: either noise or a smooth course along {order}", order=course.order)
 
 
 def notes(state: SearchState) -> tuple[str, ...]:
-    """What somebody who reads the findings should know, in words."""
+    """Remarks for readers of the findings."""
     if not state.in_tails:
         return ()
     far = max(f.best.strength for f in state.in_tails)

@@ -1,4 +1,4 @@
-"""What naming the causes is worth: prediction of readings that took no part in the fit.
+"""The benefit of the named causes: prediction of readings that took no part in the fit.
 
 Positions are held out fold by fold. The rest of the rows fit the model, without and with the signatures, and predict
 the held-out rows with full predictive covariance; all in the whitened frame, where rows are independent. *Before* is
@@ -62,7 +62,7 @@ def volume(baseline: Baseline) -> float:
 
 
 def score(baseline: Baseline, rows: Prediction) -> Score:
-    """How well the rows of a session are predicted."""
+    """Scores the prediction of a session's rows."""
     return Score(
         rms=root_mean_square(rows.error, baseline)[baseline.session.block],
         chi2_per_dof=rows.square / rows.count,

@@ -35,7 +35,7 @@ def listed(sensors: tuple[str, ...]) -> str:
 
 
 def sentence(cause: Cause, sensors: tuple[str, ...]) -> str:
-    """What is wrong with some sensors, in words."""
+    """Describes the fault of some sensors."""
     text = say(cause.sentence, sensors=listed(sensors))
     return capitalised(text)
 
@@ -60,8 +60,9 @@ def as_one(cause: Cause, a: Finding, b: Finding) -> Finding:
 
 
 def side_by_side(cause: Cause, a: Any, b: Any, further: tuple[str, ...]) -> dict[str, Any]:
-    """What two findings of one cause, of a session or of a group, say together, by field; ``further`` fields that hold
-    an entry for every sensor or rival."""
+    """The common fields of two findings of one cause, of a session or of a group; ``further``: fields that hold an
+    entry for every sensor or rival.
+    """
     names = ("sensors", "amplitude", "sigma", "units", *further)
     whole = {name: getattr(a, name) + getattr(b, name) for name in names}
     return whole | {

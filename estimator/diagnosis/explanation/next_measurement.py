@@ -35,7 +35,7 @@ def proposals(baseline: Baseline) -> Iterator[tuple[str, Baseline]]:
 
 
 def other_schedules(baseline: Baseline) -> Iterator[tuple[str, Baseline]]:
-    """Those of them that measure otherwise, and not only more often."""
+    """The proposals that measure differently, and not merely more often."""
     if baseline.session.programme == TWO_AXIS_STAND:
         for proposal in PROPOSALS:
             yield from proposal(baseline)
@@ -44,7 +44,7 @@ def other_schedules(baseline: Baseline) -> Iterator[tuple[str, Baseline]]:
 def schedule(session: CalibrationSession, beta: Array, flipped: Array) -> CalibrationSession:
     """The planned session with rows ``beta`` (R,), rad, and ``flipped`` (R,), spaced in time as before.
 
-    How it will vibrate nobody plans.
+    Its vibration is not planned.
     """
     rows, period = len(beta), PERIOD
     if session.time is not None and len(session.time) > 1:
@@ -163,4 +163,4 @@ PROPOSALS: tuple[Proposal, ...] = (
     temperature_cycle,
     other_elevation,
 )
-"""Of another schedule, in the order in which a technician would rather make them."""
+"""Proposals of another schedule, in the order in which a technician would rather make them."""

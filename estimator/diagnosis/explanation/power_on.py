@@ -1,4 +1,4 @@
-"""What settles after switching on, counted from that moment where the session says when it was.
+"""Effects that settle after switching on, counted from that moment where the session states it.
 
 An exponential looks the same from any origin: only its amplitude depends on it. Counted from switching on, amplitude
 and time constant are those of the unit, which its next session has again, and say how long to wait.

@@ -42,7 +42,7 @@ def gross_findings(readings: Sequence[SetAside], session: CalibrationSession) ->
 
 
 def gross_finding(reading: SetAside, session: CalibrationSession) -> Finding:
-    """One of them."""
+    """Describes one reading that was set aside."""
     kinds = {sensor.name: sensor.kind for sensor in session.sensors}
     return replace(
         named_cause(OUTLIER, (reading.sensor,), 0.0, reading.strength),
@@ -131,7 +131,7 @@ def record_error_finding(error: RecordError, session: CalibrationSession) -> Fin
 
 
 def record_ranking(error: RecordError, session: CalibrationSession, strength: float) -> tuple[Rival, ...]:
-    """What may be wrong with the record, most likely first: without rows, so that one line covers all of them."""
+    """The possible errors of the record, most likely first: without rows, so that one line covers all of them."""
     shares: dict[tuple[str, tuple[str, ...]], float] = {}
     for attempt, share in error.posterior():
         place = attempt.cause.identifier, concerned(attempt.places, session, of_rows=attempt.cause.of_rows)
@@ -161,7 +161,7 @@ def scale_findings(scales: Sequence[CommonScale], session: CalibrationSession) -
 
 
 def scale_finding(scale: CommonScale, session: CalibrationSession) -> Finding:
-    """One factor."""
+    """Describes one common factor."""
     m, known = len(scale.sensors), SensorDrift()
     several = len({sensor.kind for sensor in session.sensors}) > 1
     of_kind = say(" of the {kind}s", kind=scale.kind) if several else ""
@@ -179,7 +179,7 @@ def scale_finding(scale: CommonScale, session: CalibrationSession) -> Finding:
 
 
 def is_beyond_gravity(finding: Finding) -> bool:
-    """Whether it names a gravity that the Earth does not have."""
+    """Whether a finding is a gravity that does not occur on Earth."""
     least, largest = common_factors(ACCELEROMETER, None, None)
     return finding.cause == GravityEntry.identifier and not least <= np.expm1(finding.amplitude[0]) <= largest
 
@@ -199,7 +199,7 @@ def doubted_at_one_place(finding: Finding) -> Finding:
 
 
 def wrong_record(axes: ImplausibleAxes | None, session: CalibrationSession) -> tuple[Structure, ...]:
-    """Axes that no sensor can have: the record is wrong, nothing says how."""
+    """Unexplained structure: axes that no sensor can have, so that the record is wrong in an unknown way."""
     if axes is None:
         return ()
     names = tuple(session.sensors[i].name for i in axes.sensors)

@@ -1,4 +1,4 @@
-"""Which causes fit as well as the named one, and the measurement that would distinguish them."""
+"""Causes that fit as well as the named one, and the measurement that would tell them apart."""
 
 from collections.abc import Sequence
 
@@ -71,7 +71,7 @@ def separation(signature: Array, rival: Array, attributed: Array) -> float:
 
 
 def separations(state: SearchState, detection: Detection, others: Sequence[Scored]) -> tuple[Separation, ...]:
-    """For every alternative: how far it is now, and what would bring it to `DISTINGUISHED`."""
+    """The present separation of every alternative, and the measurement that would bring it to `DISTINGUISHED`."""
     attributed = state.attributed(without=detection)
     amplitude, columns = joint_amplitude(state, detection)
     signature = columns @ amplitude

@@ -37,7 +37,7 @@ class CourseMember:
     detection: Detection
     finding: Finding
     part: slice
-    """Of its amplitudes among all."""
+    """Places of its amplitudes among all."""
 
 
 def shared_finding(state: SearchState, members: Sequence[CourseMember], fitted: Amplitudes) -> Finding:
@@ -77,7 +77,7 @@ def some(names: Sequence[str], count: int) -> str:
 
 
 def group_of(state: SearchState, sensors: Sequence[int]) -> str:
-    """Which sensors of the block a course has: ``all``, all of a kind, or ``some``."""
+    """Describes the sensors of a course: ``all``, all of a kind, or ``some``."""
     kinds = state.baseline.setting.kinds
     if len(sensors) == len(kinds):
         return ALL

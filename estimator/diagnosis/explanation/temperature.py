@@ -1,4 +1,4 @@
-"""What a change of temperature since the earlier sessions can explain: it moves parameters as a drift does.
+"""Changes of parameters that a change of temperature since the earlier sessions can explain as well as a drift.
 
 The bias and scale of a sound sensor follow the temperature by a law that no session at one temperature shows. A session
 far from the temperatures of its history compares parameters under two conditions, and cannot tell which of the two
@@ -24,7 +24,7 @@ BIAS, SCALE = "bias-temperature", "scale-temperature"
 OF_TEMPERATURE = frozenset({BIAS, SCALE})
 """Causes that a change between sessions may be, where their temperatures differ."""
 OF_ALL_SENSORS = {"gravity-entry": (SCALE,), "alpha-entry": (BIAS,)}
-"""What temperature does to all sensors alike, by the change between sessions that looks the same."""
+"""Effects of temperature on all sensors alike, by the change between sessions that looks the same."""
 DRIFT = "sensor-drift"
 
 
@@ -42,7 +42,7 @@ class Temperatures:
 
 
 def temperatures(session: Array | None, history: Sequence[Array | None]) -> Temperatures | None:
-    """Where a session and most of its history were measured; None where they are alike, or where nothing says it.
+    """The temperatures of a session and of most of its history; None where they are alike or not known.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def with_temperature(findings: Sequence[Finding], temperatures: Temperatures | N
 
 
 def compared_with_temperature(finding: Finding, temperatures: Temperatures) -> Finding:
-    """One finding with what temperature may be instead of it."""
+    """One finding with the rivals by which temperature explains it."""
     rivals = tuple(name for name in rivals_of(finding) if name not in finding.alternatives)
     if not rivals:
         return finding
@@ -90,7 +90,7 @@ def compared_with_temperature(finding: Finding, temperatures: Temperatures) -> F
 
 
 def temperature_advice(finding: Finding, temperatures: Temperatures) -> str:
-    """What is known of a drift, and no more."""
+    """The facts known of a drift, and no more."""
     sensors = joined(", ", finding.sensors)
     return say(
         "The parameters of {sensors} differ from those of the earlier sessions, and the "

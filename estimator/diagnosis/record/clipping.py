@@ -65,7 +65,7 @@ class Clip:
     """(k,) readings to expect in those rows, reading units."""
     p_value: float
     strength: float
-    """In standard errors."""
+    """Strength in standard errors."""
 
     def put_right(self, session: CalibrationSession) -> CalibrationSession:
         """The session with the clipped readings replaced by what the other rows predict, and left without weight.
@@ -94,7 +94,7 @@ def unclipped(session: CalibrationSession, catalogue: Sequence[Cause]) -> tuple[
 
 
 def clips_among(session: CalibrationSession, suspects: Sequence[Suspect], cause: Cause) -> list[Clip]:
-    """Those of the suspects that are clipped, none of which takes part in saying what the others should have read."""
+    """The suspects that are clipped; no suspect takes part in predicting the readings of the others."""
     clips = []
     for suspect, expected in zip(suspects, expectations(session, suspects), strict=True):
         if expected is None or (len(suspect.rows) < FEWEST and not expected.believed):
@@ -119,8 +119,9 @@ def clipped_once(session: CalibrationSession, cause: Cause) -> list[Clip]:
 
 
 def suspected(session: CalibrationSession) -> Iterator[Suspect]:
-    """Both sides of every sensor that has several rows at one end of its range. Gyros that rest in unknown orientations
-    are none of them: nothing says what they should have read."""
+    """Both sides of every sensor that has several rows at one end of its range. Gyros at rest in unknown orientations
+    are left out: nothing predicts their readings.
+    """
     for i, sensor in enumerate(session.sensors):
         if session.programme != TWO_AXIS_STAND and sensor.kind != ACCELEROMETER:
             continue
@@ -138,7 +139,7 @@ def at_end(session: CalibrationSession, i: int, k: int, side: float) -> Array:
 
 
 def expectations(session: CalibrationSession, suspects: Sequence[Suspect]) -> list[Expected | None]:
-    """What to expect in the rows of every suspect, none of which takes part, in order."""
+    """The expected readings in the rows of every suspect, in order; none of these rows takes part."""
     if session.programme != TWO_AXIS_STAND:
         return in_orientations(session, [(s.sensor, s.rows) for s in suspects]) if suspects else []
     results: list[Expected | None] = []

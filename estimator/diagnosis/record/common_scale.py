@@ -36,12 +36,12 @@ ALIKE = 0.1
 NOISE = 3.0
 """Standard errors of a sensor's own change within which it agrees."""
 LEVEL = 1e-4
-"""Of one pair of sessions: ten earlier sessions then cost a tenth of the 1 % that a whole diagnosis may err by."""
+"""Level for one pair of sessions: ten earlier sessions then cost a tenth of the 1 % error of a whole diagnosis."""
 
 
 @dataclass(frozen=True)
 class CommonScale:
-    """What all scale factors of one kind of sensor did together since the latest earlier session."""
+    """A change that all scale factors of one kind of sensor share since the latest earlier session."""
 
     kind: str
     sensors: tuple[int, ...]
@@ -71,7 +71,7 @@ def on_one_scale(
 
 
 def is_one_place(now: Baseline, history: Sequence[Baseline]) -> bool:
-    """Whether a session states the place of all of its history."""
+    """Whether all sessions of the history state the place of this one."""
     return all(h.session.site == now.session.site for h in history)
 
 

@@ -1,4 +1,4 @@
-"""What a sensor should have read in some rows, by everything that those readings take no part in.
+"""Expected readings of a sensor in some rows, by all data but those readings.
 
 On a stand the applied vectors are known, so a sensor's other rows say it by a linear fit. In arbitrary orientations
 the whole session is fitted without those readings: the other sensors and the sensor's other rows say it together.
@@ -44,12 +44,12 @@ HALVED = 12
 
 @dataclass(frozen=True, eq=False)
 class Expected:
-    """What a sensor should have read in k rows."""
+    """The expected readings of a sensor in k rows."""
 
     value: Array
     """(k,) reading units."""
     covariance: Array
-    """(k, k) of what would be read there, reading units squared."""
+    """(k, k) covariance of the readings to be seen there, reading units squared."""
     freedom: float
     """Degrees of freedom that the covariance is known with; infinite where the stated noise is believed."""
 
@@ -59,7 +59,7 @@ class Expected:
         return bool(np.isinf(self.freedom))
 
     def of(self, rows: slice) -> "Expected":
-        """Of some of the rows."""
+        """The expected readings in some of the rows."""
         return Expected(self.value[rows], self.covariance[rows, rows], self.freedom)
 
     def significance(self, read: Array, side: float) -> tuple[float, float]:
@@ -75,7 +75,7 @@ class Expected:
 
 
 def on_stand(session: CalibrationSession, cells: Cells) -> Expected | None:
-    """By the sensor's other rows; None where they leave it open.
+    """The expected readings by the sensor's other rows; None where they leave them open.
 
     u = c₀ + c·n + c₂·a², a along the nominal axis, fitted by least squares.
     """
@@ -129,7 +129,8 @@ def fits(session: CalibrationSession, felt: Array) -> bool:
 
 
 def in_orientations(session: CalibrationSession, cells: Sequence[Cells]) -> list[Expected | None]:
-    """Of accelerometers, one for each of ``cells``, by a fit in which none of them takes part; None where it is open.
+    """The expected readings of accelerometers, one for each of ``cells``, by a fit without these; None where it leaves
+    them open.
 
     With F the information of parameters and orientations together, h the derivative of one reading by both and σ its
     noise, the covariance of two predictions is h'F⁻¹h, and σ² on its diagonal. Where the stated noise does not explain
@@ -162,7 +163,9 @@ def in_orientations(session: CalibrationSession, cells: Sequence[Cells]) -> list
 
 
 def _covariance(solution: Solution, i: int, rows: Array) -> Array | None:
-    """(k, k) of the predictions of sensor i in ``rows`` (k,), relative to g; None where the fit leaves one open."""
+    """(k, k) covariance of the predictions of sensor i in ``rows`` (k,), relative to g; None where the fit leaves one
+    open.
+    """
     linear, known = linearise(solution.rows, solution.unknowns), solution.knowledge
     sigma = solution.rows.sigma[rows, i]
     local, shared = linear.local[rows, i] * sigma[:, None], linear.shared[rows, i] * sigma[:, None]

@@ -18,15 +18,16 @@ turn them further."""
 
 @dataclass(frozen=True)
 class ImplausibleAxes:
-    """Where axes came out that no block of this unit can have."""
+    """Axes that no block of this unit can have."""
 
     sensors: tuple[int, ...]
-    """Those whose axis is off by itself; none where all turned together."""
+    """The sensors whose axis is off by itself; none where all turned together."""
     angle: float
     """The largest, rad."""
     step: float | None = None
-    """By how much the zero of the one sensor changed from the direct to the flipped run, m/s² (rad/s), where that may
-    as well be what is wrong: on a stand it does the same to the readings."""
+    """Change of the one sensor's zero from the direct to the flipped run, m/s² (rad/s), where that may be the true
+    fault: on a stand it has the same effect on the readings.
+    """
 
 
 def implausible_axes(baseline: Baseline, expected: Array) -> ImplausibleAxes | None:

@@ -34,7 +34,7 @@ class WrongEntry:
 
     cause: Entry
     amplitude: float
-    """In the cause's unit."""
+    """Amplitude in the cause's unit."""
     sigma: float
     p_value: float
     strength: float

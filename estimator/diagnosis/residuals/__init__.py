@@ -1,1 +1,1 @@
-"""What the baseline leaves of a session: whitened and projected residuals, moves between sessions, gauge freedom."""
+"""Residuals of the baseline: whitened and projected; changes between sessions; gauge freedom."""

@@ -41,7 +41,7 @@ class Whitener:
 
     @classmethod
     def of(cls, variance: Array, row: Array, row_sigma: Array) -> "Whitener":
-        """From the noise and the nuisances of every row, as in `Baseline`."""
+        """The whitener of the noise and the nuisances of every row, as in `Baseline`."""
         weight = 1.0 / np.sqrt(variance)
         unknown = np.isinf(row_sigma)
         sigma = np.where(unknown, 1.0, row_sigma)
@@ -95,7 +95,7 @@ def axis_response(parameters: SensorParameters) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Absorption:
-    """What the baseline takes of whitened readings. N = R·m + k rows, P = 5 m parameters."""
+    """The part of whitened readings that the baseline absorbs. N = R·m + k rows, P = 5 m parameters."""
 
     basis: Array
     """(N, p) orthonormal: what the baseline absorbs."""
@@ -104,7 +104,7 @@ class Absorption:
 
     @classmethod
     def of(cls, design: Array, P: int) -> "Absorption":
-        """Of a whitened design (N, P + k), standard errors per unit."""
+        """The absorption of a whitened design (N, P + k), standard errors per unit."""
         basis, response = decomposed(design, RANK)
         return cls(basis, response[:P])
 
@@ -118,7 +118,7 @@ class Baseline:
     residual: Array
     """(R, m) measured minus simulated, at the input, m/s² (rad/s)."""
     variance: Array
-    """(R, m) of the independent noise at the input, (m/s²)² ((rad/s)²)."""
+    """(R, m) variance of the independent noise at the input, (m/s²)² ((rad/s)²)."""
     unstated: Array
     """(m,) bool: the noise is estimated from these residuals."""
     constant: Array
@@ -134,7 +134,7 @@ class Baseline:
     turn: Array = field(default_factory=lambda: np.zeros(3))
     """(3,) rotation vector, rad, of an earlier session: it was turned by this into the frame of the one diagnosed."""
     sits_otherwise: bool = False
-    """Whether the block sat otherwise than in the latest earlier session, so that its frame shows no common turn."""
+    """Whether the block sat differently in the latest earlier session, so that its frame shows no common turn."""
     course: Array | None = None
     """(R, m) an effect beside which it was fitted, m/s² (rad/s); it is in the residuals. None where there is none."""
     unsettled: Array | None = None
@@ -171,7 +171,7 @@ class Baseline:
 
     @cached_property
     def absorption(self) -> Absorption:
-        """What the fit takes of the readings."""
+        """The part of the readings that the fit absorbs."""
         return Absorption.of(self.whitened_design, 5 * self.residual.shape[1])
 
     @cached_property
@@ -192,7 +192,7 @@ class Baseline:
 
     @property
     def covariance_between(self) -> Array:
-        """(5 m, 5 m) the same with how far they may lie off those of settled sessions, dimensionless."""
+        """(5 m, 5 m) `covariance` with the spread of the parameters about those of settled sessions, dimensionless."""
         return self.covariance if self.unsettled is None else self.covariance + np.diag(self.unsettled.ravel() ** 2)
 
 

@@ -1,4 +1,4 @@
-"""What moved since the history: the parameters of earlier sessions as one reference with covariance.
+"""Changes since the history: the parameters of earlier sessions as one reference with covariance.
 
 Earlier baselines come turned into the frame of now (`turns`), so that what is compared is small however the block sat.
 The turn k that was taken off is put back as what it is, an amplitude: with the parameters' response T to a turn the

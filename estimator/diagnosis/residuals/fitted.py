@@ -1,4 +1,4 @@
-"""From a session to its fitted baseline simulation, on a stand or in arbitrary orientations."""
+"""Fits the baseline simulation to a session, on a stand or in arbitrary orientations."""
 
 from collections import defaultdict
 from collections.abc import Hashable, Sequence

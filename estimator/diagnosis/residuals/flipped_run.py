@@ -24,7 +24,7 @@ SMALL = 1e-4
 LARGEST = 0.2
 """rad (11°) beyond which the run was not merely seated badly: the record is wrong, and no place is better than none."""
 ROUNDS = 6
-"""Of fits; two or three are usual."""
+"""Rounds of fits; two or three are usual."""
 
 
 def flip_effect(setting: Setting) -> Array:
@@ -40,7 +40,7 @@ def with_its_flip(session: CalibrationSession) -> Baseline:
 
 
 def with_fitted_flip(baseline: Baseline, start: SensorParameters | None = None) -> Baseline:
-    """The same of a session that is fitted, from the same ``start``, with no turn."""
+    """A fitted session's baseline, fitted again about its turn from the same ``start``, with no turn to begin with."""
     session, cause = baseline.session, FlipMisalignment()
     if session.programme != TWO_AXIS_STAND or not cause.available(baseline.setting):
         return baseline

@@ -1,4 +1,4 @@
-"""How likely a session's readings are under one noise and another, whatever its parameters are.
+"""Restricted likelihood of a session's readings under a noise, whatever its parameters are.
 
 Theory
 ------

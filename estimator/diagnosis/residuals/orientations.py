@@ -24,7 +24,7 @@ class OrientationState:
     """(R,) rad; infinite where the direction is estimated from the readings themselves."""
     parameters: SensorParameters
     variance: Array
-    """(R, m) of the independent noise at the input, (m/s²)² ((rad/s)²)."""
+    """(R, m) variance of the independent noise at the input, (m/s²)² ((rad/s)²)."""
     felt: bool
     """Whether there are accelerometers, so that gyros' specific force is known."""
 

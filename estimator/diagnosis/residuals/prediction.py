@@ -1,4 +1,4 @@
-"""How well a model predicts rows that took no part in its fit.
+"""Cross-validation: prediction of rows that took no part in the fit.
 
 Rows are held out fold by fold. The rest fit the baseline, the constant nuisances and the effects in the model, and
 predict the rows held out with full predictive covariance; all in the whitened frame, where rows are independent.
@@ -43,7 +43,7 @@ class Prediction:
 
     @property
     def scale_free(self) -> float:
-        """The same, but for a constant, where the scale of the noise is whatever the errors say."""
+        """Log predictive density, but for a constant, where the scale of the noise is estimated from the errors."""
         return -0.5 * (self.count * float(np.log(self.square)) + self.volume)
 
 
@@ -113,7 +113,7 @@ def by_sensor(error: Array, baseline: Baseline) -> dict[str, dict[str, float]]:
 
 
 def root_mean_square(error: Array, baseline: Baseline) -> dict[str, float]:
-    """Of errors (R, m), m/s² (rad/s), by kind of sensor: units are never mixed."""
+    """Root mean square of errors (R, m), m/s² (rad/s), by kind of sensor: units are never mixed."""
     kinds = np.array(baseline.setting.kinds)
     by_kind = {str(kind): float(np.sqrt(np.mean(error[:, kinds == kind] ** 2))) for kind in dict.fromkeys(kinds)}
     return (

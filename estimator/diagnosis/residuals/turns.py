@@ -24,7 +24,7 @@ from estimator.session import Array, CalibrationSession
 from estimator.significance import p_value
 
 ROUNDS = 20
-"""Of Gauss–Newton; three to six are usual."""
+"""Rounds of Gauss–Newton; three to six are usual."""
 NEGLIGIBLE = 1e-10
 """rad (2e-5″): a step that no longer moves the place of linearisation."""
 NEAR = 1e-6
@@ -47,7 +47,7 @@ def turned_session(session: CalibrationSession, turn: Array) -> CalibrationSessi
 
 
 def turned_baseline(baseline: Baseline, turn: Array) -> Baseline:
-    """The same baseline in block axes turned by (3, 3), dimensionless: its residuals and noise stay as they are.
+    """The baseline in block axes turned by (3, 3), dimensionless: its residuals and noise stay as they are.
 
     So does what the fit takes of the readings. Along the tangents of the turned axes the parameters are others, by an
     orthogonal C: what is worked out of the baseline is carried over instead of worked out anew.
@@ -80,7 +80,7 @@ def turned_baseline(baseline: Baseline, turn: Array) -> Baseline:
 
 
 def of_each(covariance: Array) -> Array:
-    """(m, 5, 5) of every sensor's own parameters, from the covariance (P, P) of all."""
+    """(m, 5, 5) covariance of every sensor's own parameters, from the covariance (P, P) of all."""
     m = len(covariance) // 5
     return np.asarray(covariance.reshape(m, 5, m, 5)[np.arange(m), :, np.arange(m)])
 
@@ -140,7 +140,8 @@ def turned_covariance(now: Baseline, earlier: Baseline, turn: Array) -> Array:
 
 
 def is_reseated(now: Baseline, difference: Array, covariance: Array) -> bool:
-    """Whether the block sat otherwise in one session than in the latest: turned by ``difference`` (3, 3), with
-    the ``covariance`` (P, P) of both, dimensionless, as `turned_covariance` ``now``."""
+    """Whether the block sat differently in one session than in the latest: turned by ``difference`` (3, 3), with the
+    ``covariance`` (P, P) of both, dimensionless, as `turned_covariance` gives it.
+    """
     seen = inverse_root(covariance) @ turn_response(now.parameters) @ vector_of(difference)
     return bool(p_value(seen @ seen, 3) < OTHERWISE)

@@ -22,12 +22,12 @@ from estimator.session import Array
 
 @dataclass(frozen=True, eq=False)
 class ParameterChange:
-    """How the parameters moved since the history, whitened. P = 5 m parameters."""
+    """The change of the parameters since the history, whitened. P = 5 m parameters."""
 
     deviation: Array
     """(P,) standard errors: deviation of this session's parameters from the history."""
     inverse_root: Array
-    """(P, P) of the deviation's covariance: whitens a dimensionless parameter change."""
+    """(P, P) inverse root of the deviation's covariance: whitens a dimensionless parameter change."""
     earlier: tuple["EarlierSession", ...] = ()
     """The sessions that the reference is made of."""
 
@@ -40,7 +40,7 @@ class EarlierSession:
     share: Array
     """(P, P) dimensionless: change of the reference, seen from now, with the parameters found in that session."""
     setting: Setting
-    """Of that session, at the parameters of now."""
+    """Setting of that session, at the parameters of the present one."""
 
     @cached_property
     def absorbs(self) -> Array:
@@ -71,7 +71,7 @@ class WhitenedResiduals:
 
     @classmethod
     def of(cls, baseline: Baseline, change: ParameterChange | None = None) -> "WhitenedResiduals":
-        """Of a fitted session, and of its change since the history."""
+        """The residuals of a fitted session, with its change since the history."""
         whiten, k = baseline.whiten, len(baseline.constant_sigma)
         basis, response = baseline.absorption.basis, baseline.absorption.response
         data = np.concatenate([whiten(baseline.residual[..., None])[:, 0], np.zeros(k)])
@@ -108,7 +108,7 @@ class WhitenedResiduals:
         return self.remaining_of(self.whitened(columns), before)
 
     def remaining_of(self, white: Array, before: Array | float | None = None) -> Array:
-        """(n, q) standard errors: the same of a signature that is `whitened` (N, q)."""
+        """(n, q) standard errors: the part of a signature, `whitened` (N, q), that the baseline leaves."""
         inside = white - self.basis @ (self.basis.T @ white)
         if self.change is None:
             return inside

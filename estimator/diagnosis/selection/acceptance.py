@@ -1,4 +1,4 @@
-"""What of the search is accepted: a name claims that the cause fits, not that it is nearest."""
+"""Acceptance of the search's result: a name claims that the cause fits, not merely that it is nearest."""
 
 from dataclasses import replace
 
@@ -52,12 +52,12 @@ def accepted(start: SearchState) -> SearchState:
 
 
 def left_claims(start: SearchState, event: tuple[Detection, ...]) -> tuple[NoiseClaim, ...]:
-    """Whose stated noise a course that sensors share leaves in doubt, what departs from it taken off too."""
+    """The noise claims that a shared course leaves in doubt, sensors that depart from it taken off too."""
     return doubted(replace(start, detections=(*event, *departures(start))))
 
 
 def explains_scatter(state: SearchState) -> bool:
-    """Whether a course that sensors share stands, and nothing is left that scatters otherwise than stated."""
+    """Whether a course that sensors share stands, and no residual scatters otherwise than stated."""
     return len([f for f in state.detections if f.event]) > 1 and not (state.scatter or state.structures)
 
 

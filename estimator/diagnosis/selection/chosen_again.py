@@ -55,7 +55,7 @@ def without_unpredictive(state: SearchState) -> SearchState:
 
 
 def predicts(state: SearchState, unit: Sequence[Detection]) -> bool:
-    """Whether a finding, or all of one course together, says something of rows by which it was not chosen.
+    """Whether a finding, or all findings of one course together, predicts rows by which it was not chosen.
 
     It does not where it shows in what changed since the history rather than in the session's own rows, nor where a fold
     holds most of what shows of it: without those rows nobody could know.
@@ -84,7 +84,9 @@ def _predicted(residuals: WhitenedResiduals, traces: tuple[Traces, ...], judged:
 def spreads(
     residuals: WhitenedResiduals, judged: Sequence[Detection], chosen: Sequence[Sequence[Array]]
 ) -> list[Array]:
-    """For every fold the (Q,) standard deviations of the amplitudes of its columns, one alone being unknown."""
+    """(Q,) standard deviations of the amplitudes of the columns, fold by fold; the amplitude of a lone finding is
+    unknown.
+    """
     found = []
     for rest, columns in zip(without_folds(residuals.baseline), chosen, strict=True):
         of_units = zip(units(judged), columns, strict=True)
@@ -94,7 +96,7 @@ def spreads(
 
 
 def spread(residuals: WhitenedResiduals, rest: "Rest", columns: Array) -> Array:
-    """(q,) of amplitudes of columns (R, m, q) whose squares, in standard errors, have one mean."""
+    """(q,) standard deviations of amplitudes of columns (R, m, q) whose squares, in standard errors, have one mean."""
     rows = residuals.whitened(columns)[rest.remaining]
     trace = rows - rest.basis @ (rest.basis.T @ rows)
     size = np.maximum(np.linalg.norm(trace, axis=0), 1e-300)
@@ -105,7 +107,7 @@ def spread(residuals: WhitenedResiduals, rest: "Rest", columns: Array) -> Array:
 def chosen_in_folds(
     residuals: WhitenedResiduals, traces: Sequence[Traces], judged: Sequence[Detection]
 ) -> list[list[Array]]:
-    """For every fold the columns (R, m, q), m/s² (rad/s), of the causes chosen without its rows."""
+    """The columns (R, m, q), m/s² (rad/s), of the causes chosen without a fold's rows, for every fold."""
     found = [(unit, candidates(residuals, traces, unit)) for unit in units(judged)]
     chosen = []
     for rest in without_folds(residuals.baseline):
@@ -125,12 +127,12 @@ class Candidates:
     columns: tuple[Array, ...]
     """(R, m, q) each, m/s² (rad/s)."""
     price: tuple[float, ...]
-    """ln of how many share the prior of each one's cause."""
+    """ln of the number of shapes that share the prior of each one's cause."""
     whitened: tuple["Alike", ...]
 
 
 def candidates(residuals: WhitenedResiduals, traces: Sequence[Traces], unit: Sequence[Detection]) -> Candidates:
-    """Those of a finding, or of all findings of one course."""
+    """The candidates for a finding, or for all findings of one course."""
     if len(unit) > 1 and not isinstance(unit[0].best.cause, SharedCourse):
         priced = list(shapes_together(traces, unit, LEADERS))
     elif len(unit) > 1:

@@ -92,7 +92,7 @@ def drop_overfitted_causes(state: SearchState, held_there: Set[Group]) -> Search
 
 
 def is_overfitted(state: SearchState) -> bool:
-    """Whether more happened than misfortunes are likely at once: different names, structures, sensors that scatter."""
+    """Whether more happened than is likely at once: different names, structures, sensors that scatter."""
     names = {f.best.cause.identifier for f in state.detections}
     return len(names) + bool(state.structures) + len(state.scatter_attributed) > MOST_LIKELY
 
@@ -119,7 +119,8 @@ def misfit_allowance(state: SearchState) -> float:
 
 
 def with_residual_noise(start: SearchState, state: SearchState, unknown: Array) -> tuple[SearchState, SearchState]:
-    """Nothing found, and what was found, ``unknown`` sensors' (m,) bool noise taken as what that leaves.
+    """The search before any finding, and its result, with the noise of ``unknown`` sensors (m,) bool taken as the
+    scatter that the findings leave.
 
     A noise estimated from residuals that hold an effect hides it, from a course more than from a name. Where no name is
     of what changed since the history, that is left out: parameters are then known so well that minutes of arc are no
@@ -141,14 +142,16 @@ def with_residual_noise(start: SearchState, state: SearchState, unknown: Array) 
 
 
 def concerns_all(state: SearchState) -> bool:
-    """Whether what was found is of no sensor, or on two sensors or more."""
+    """Whether what was found concerns no sensor in particular, or two sensors or more."""
     places = {f.best.sensors for f in (*state.detections, *state.structures)} | {(s.sensor,) for s in state.scatter}
     return () in places or len(places) > 1
 
 
 @dataclass(frozen=True, eq=False)
 class Ground:
-    """Nothing found, with the noise by which a course is weighed, and the course that explains most there."""
+    """The search before any finding, with the noise by which a course is weighed, and the course that explains most
+    there.
+    """
 
     begun: SearchState
     noise: float
@@ -157,7 +160,7 @@ class Ground:
 
     @property
     def log_evidence(self) -> float:
-        """Of the course in that noise against nothing in the noise as stated."""
+        """ln evidence of the course in that noise against no effect in the noise as stated."""
         return self.course.log_evidence + self.noise
 
 
@@ -236,7 +239,7 @@ class SharedRival:
     course: AppliedCourse
     parity: SearchState
     log_evidence: float
-    """Of both together."""
+    """ln evidence of both together."""
 
 
 def with_free_vector(
@@ -303,6 +306,6 @@ def traced(start: SearchState, old: Scored) -> Scored:
 
 
 def sharing(best: Scored, places: int) -> Scored:
-    """What a sensor shows of an event, which chooses among other ``places`` than a cause of one sensor."""
+    """The score of a sensor's part in an event, which is chosen among other ``places`` than a cause of one sensor."""
     log_evidence = best.log_evidence + float(np.log(best.places / places))
     return replace(best, places=places, log_evidence=log_evidence)

@@ -1,4 +1,4 @@
-"""Who of a course that sensors share has a shape of its own, and whose parameters changed for good beside it.
+"""Finds the sensors of a shared course that have a shape of their own, or whose parameters changed for good.
 
 Theory
 ------
@@ -42,15 +42,15 @@ class Followed:
     """A course with the sensors that follow it."""
 
     course: EventCourse
-    """Of these sensors alone."""
+    """The course of these sensors alone."""
     departing: tuple[Scored, ...]
-    """The shapes of sensors that would follow but for one of their own."""
+    """The own shapes of sensors that would otherwise follow."""
     changed: tuple[Scored, ...]
-    """What has changed for good since the history of a sensor."""
+    """Lasting changes of a sensor since the history."""
     sure: frozenset[int]
     """Sensors that can be named alone."""
     log_evidence: float
-    """Against no effect, the choice of shape and sensors paid for."""
+    """ln evidence against no effect, the choice of shape and sensors paid for."""
     shape_in_doubt: bool
     """Whether a shape of its own for every sensor may explain as much (`shared_shape.py`)."""
 
@@ -124,8 +124,10 @@ def best_own_shape(
 def likeliest_change(
     start: SearchState, kept: EventCourse, beside: Array
 ) -> tuple[tuple[Scored, ...], EventCourse, float]:
-    """What has changed of one sensor since the history, a course moved to its best beside it, and the ln evidence that
-    both bring; ``beside`` (n, f) orthonormal traces. Nothing, as it is and 0 where nothing has."""
+    """The likeliest lasting change of one sensor since the history, a course moved to its best beside it, and the ln
+    evidence that both bring; ``beside`` (n, f) orthonormal traces. Empty, the course as it is and 0 where nothing
+    changed.
+    """
     since, z = [traces for traces in start.traces if traces.cause.moves_parameters], start.residuals.z
     found = score(start.residuals, since, extended_basis(beside, unit_traces(kept))) if since else []
     if not found:
@@ -147,8 +149,9 @@ def basis_of(start: SearchState, others: Sequence[Scored]) -> Array:
 def powers_apart(
     start: SearchState, course: EventCourse, others: Sequence[EventCourse], departing: Array
 ) -> tuple[list[Array], list[float]]:
-    """What each sensor of a course explains by its shape in every one of ``others`` beside what the rest of them share
-    and ``departing`` (n, d) traces, and by the one that it shares with them."""
+    """The power of each sensor of a course by its shape in every one of ``others``, beside what the rest of them share
+    and ``departing`` (n, d) traces, and by the shape that it shares with them.
+    """
     shared, every, own = unit_traces(course), list[Array](), list[float]()
     for k in range(len(course.sensors)):
         of_sensor = course.traces.columns[[other.numbers[k] for other in others], :, 0].T

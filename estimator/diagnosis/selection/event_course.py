@@ -31,21 +31,21 @@ class EventCourse:
 
     traces: Traces
     numbers: tuple[int, ...]
-    """Of the shapes, in the order of the sensors."""
+    """Numbers of the shapes, in the order of the sensors."""
     tried: float
     """n_ψ, how many nonlinear parameters the cause is tried with."""
 
     @property
     def sensors(self) -> tuple[int, ...]:
-        """Of its shapes."""
+        """Numbers of the sensors that its shapes belong to."""
         return tuple(int(i) for i in self.traces.sensor[list(self.numbers)])
 
     def on(self, sensors: Sequence[int]) -> "EventCourse":
-        """Those of some sensors."""
+        """The course on some of its sensors."""
         return self.of([k for k in self.numbers if self.traces.sensor[k] in sensors])
 
     def of(self, numbers: Sequence[int]) -> "EventCourse":
-        """Those of some numbers."""
+        """The course with the shapes of some numbers."""
         return replace(self, numbers=tuple(numbers))
 
     def scored(self, k: int) -> Scored:
@@ -101,7 +101,9 @@ def without_formula(start: SearchState) -> list[EventCourse]:
 
 
 def free_course(start: SearchState, kind: int, waves: Array) -> list[EventCourse]:
-    """That of one kind, with traces ``waves`` (n, m·w) on all sensors."""
+    """The likeliest course of one kind, with traces ``waves`` (n, m·w) on all sensors; empty where too few sensors show
+    it.
+    """
     residuals, setting, m = start.residuals, start.baseline.setting, start.sensor_count
     found, cause = FreeCourse.of(waves, residuals.z, m), SharedCourse()
     nonlinear = of_kind(kind, found.waves)

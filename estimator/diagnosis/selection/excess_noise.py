@@ -50,7 +50,7 @@ def overdispersed(state: SearchState) -> list[bool]:
 
 
 def with_unknown_noise(state: SearchState, sensor: int) -> SearchState:
-    """The same search without belief in a sensor's stated noise."""
+    """The search with the noise of one sensor taken as not stated."""
     unstated = state.baseline.unstated.copy()
     unstated[sensor] = True
     residuals = replace(state.residuals, baseline=replace(state.baseline, unstated=unstated))

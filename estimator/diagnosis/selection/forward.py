@@ -56,7 +56,9 @@ def forward_selection(state: SearchState) -> SearchState:
 def scatter_or_cause(
     state: SearchState, noisy: ExcessVariance
 ) -> tuple[tuple[ExcessVariance | Autocorrelation, ...], Detection | None]:
-    """What a sensor's scatter is, or the cause that stands out of it; neither where it holds a pattern."""
+    """Explains a sensor's scatter: as noise or a course, or by the cause that stands out; neither where it is a
+    pattern.
+    """
     doubting = in_own_scatter(state, noisy)
     best = strongest(doubting, doubting.traces)
     course = excess_as_course(doubting, noisy)

@@ -48,12 +48,12 @@ TINY = float(np.finfo(float).tiny)
 """Keeps a division by nothing finite."""
 
 ROUNDS = 12
-"""Of the weights; scale and amplitudes have then come to rest within a hundredth."""
+"""Rounds of weights; scale and amplitudes have then come to rest within a hundredth."""
 
 
 @dataclass(frozen=True, eq=False)
 class Tails:
-    """How the errors of a session are distributed, for all that its readings show."""
+    """Posterior distribution of a session's errors, by its readings."""
 
     weight: Array
     """(Q,) posterior of `FREEDOMS`."""
@@ -67,7 +67,7 @@ class Tails:
 
     @property
     def evenly(self) -> "Tails":
-        """The same where every ν was as likely beforehand."""
+        """The posterior distribution for a uniform prior of ν."""
         weight = self.weight / PRIOR
         return replace(self, weight=weight / weight.sum())
 
@@ -96,7 +96,7 @@ def chance(state: SearchState, tails: Tails, detection: Detection) -> float:
 
 
 def tails_of(state: SearchState) -> Tails | None:
-    """What all that was found leaves says of the tails; None where the readings are too few."""
+    """The tails of everything that the findings leave; None where the readings are too few."""
     n = state.baseline.residual.size
     freedom = state.residuals.row_freedom[:n] - (state.attributed()[:n] ** 2).sum(axis=1)
     known = freedom > KNOWN
@@ -121,7 +121,7 @@ def scale_of(residuals: Array, freedom: float) -> float:
 
 
 def weights(residuals: Array, freedom: float, scale: float) -> Array:
-    """(N,) how much a residual counts, dimensionless: one for normal errors."""
+    """(N,) weights of the residuals, dimensionless: one for normal errors."""
     if np.isinf(freedom):
         return np.ones_like(residuals)
     return np.asarray((freedom + 1) / (freedom + (residuals / scale) ** 2))

@@ -28,8 +28,10 @@ MISFIT = 0.05
 they are the nearest to, below it a cause described nearly, with something small beside it."""
 
 DEPARTURE = 1.0
-"""The same of a sensor that follows a shared course: it may depart from it besides by as much as it follows it. Without
-its share of the course in the model it would pull what all sensors share of a row."""
+"""Share of the energy of names that structure may hold beside a sensor that follows a shared course: it may depart from
+the course by as much as it follows it. Without its share of the course in the model it would pull what all sensors
+share of a row.
+"""
 
 DOUBTFUL = 0.02
 """p-value of normal noise below which scatter in excess is called none: one true excess in fifty loses its name."""
@@ -114,7 +116,7 @@ def with_unlike_noise(state: SearchState) -> SearchState:
 
 
 def unlike_noise(state: SearchState, sensor: int, excess: ExcessVariance | None) -> UnlikeNoise | None:
-    """How a sensor's scatter differs from noise; None where it does not, or where too few rows tell."""
+    """The difference between a sensor's scatter and noise; None where there is none, or where too few rows tell."""
     residuals, attributed = state.residuals, state.attributed()
     freedom = residuals.row_freedom - (attributed[: residuals.rows] ** 2).sum(axis=1)
     of_sensor = (residuals.sensor_of_row[: residuals.rows] == sensor) & (freedom > KNOWN)

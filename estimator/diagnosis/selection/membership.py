@@ -1,4 +1,4 @@
-"""Which sensors follow a course that a group of them shares, and how surely each does.
+"""Finds the sensors that follow a course which a group of them shares, with the certainty of each.
 
 Theory
 ------
@@ -43,11 +43,11 @@ class CauseMembers:
 
     chosen: tuple[int, ...]
     sure: tuple[int, ...]
-    """Those of them that can be named alone."""
+    """The chosen sensors that can be named alone."""
     log_evidence: float
-    """ln of how likely they are, against no course."""
+    """ln evidence against no course."""
     alone: float
-    """The same of the likeliest single one."""
+    """ln evidence of the likeliest single sensor."""
 
     @property
     def are_several(self) -> bool:
@@ -57,14 +57,14 @@ class CauseMembers:
 
 @dataclass(frozen=True, eq=False)
 class Loadings:
-    """What the sensors show along a course. k sensors that may follow it."""
+    """Response of the sensors along a course. k sensors that may follow it."""
 
     gram: Array
     """(k, k) products of their traces, each of length one."""
     along: Array
     """(k,) products of the traces with the residuals, standard errors."""
     kinds: tuple[str, ...]
-    """(k,) of the sensors."""
+    """(k,) kinds of the sensors."""
     counts: dict[str, int]
     """Sensors of every kind in the block."""
 
@@ -98,7 +98,9 @@ class Loadings:
         return likelihood + prior, own + self.log_prior(set(chosen))
 
     def likelihoods(self, chosen: tuple[int, ...]) -> tuple[Array, float]:
-        """The same of the readings alone, without ln p(k)."""
+        """(k,) ln p of the sets that differ by a sensor, and of the set itself, by the readings alone: without ln
+        p(k).
+        """
         inside = np.zeros(len(self.along), dtype=bool)
         inside[list(chosen)] = True
         A, y, cross = self.gram[np.ix_(inside, inside)], self.along[inside], self.gram[inside]

@@ -93,8 +93,9 @@ def doubted(state: SearchState) -> tuple[NoiseClaim, ...]:
 
 
 def is_one_sensor(state: SearchState) -> bool:
-    """Whether nothing of what scatters is left to be claimed once the noise of one sensor, that which scatters most, is
-    its own: it pulls what all share of a row to its readings, and the others then scatter too."""
+    """Whether nothing is left to be claimed once the noisiest sensor has a noise of its own: it pulls what all share of
+    a row to its readings, and the others then scatter too.
+    """
     energy, freedom = sensor_scatter(state)
     unstated = state.baseline.unstated.copy()
     noisiest = int(np.argmax(energy / np.maximum(freedom, 1.0)))
@@ -104,7 +105,7 @@ def is_one_sensor(state: SearchState) -> bool:
 
 
 def _claims(state: SearchState, kind: str, of_kind: Array) -> Iterator[NoiseClaim]:
-    """Of the sensors (k,) int of one kind; in either sense at most one."""
+    """The claims about the sensors (k,) int of one kind; at most one for each side, less noise or more."""
     each = scatter_of(state, of_kind)
     whole = together(each)
     for side, least in enumerate((QUIET / len(each), SEEN)):
@@ -128,14 +129,14 @@ def together(each: Iterable[ClaimScatter]) -> ClaimScatter:
 
 
 def scatter_of(state: SearchState, of_kind: Array) -> list[ClaimScatter]:
-    """What a search leaves of each of some sensors (k,) int, dimensionless, in its stated errors."""
+    """The scatter that a search leaves of each of some sensors (k,) int, dimensionless, in its stated errors."""
     energy, freedom = sensor_scatter(state)
     scale = np.median(state.baseline.variance / state.stated, axis=0)
     return [ClaimScatter(float(energy[i] * scale[i]), float(freedom[i])) for i in of_kind]
 
 
 def is_credible(baseline: Baseline, of_kind: Array) -> bool:
-    """Whether rows of one position repeat as the stated noise says; ``of_kind`` (k,) int, sensors."""
+    """Whether rows at one position repeat as closely as the stated noise allows; ``of_kind`` (k,) int, sensors."""
     pure = pure_error(baseline, of_kind)
     return pure.freedom >= FEWEST and min(pure.tails) > AGREES
 
@@ -175,7 +176,7 @@ def of_whole_kinds(state: SearchState, claims: Iterable[NoiseClaim]) -> tuple[No
 
 
 def of_its_kind(state: SearchState, claim: NoiseClaim) -> NoiseClaim:
-    """The claim, of all sensors of its kind."""
+    """The claim, extended to all sensors of its kind."""
     whole = tuple(i for i, k in enumerate(state.baseline.setting.kinds) if k == claim.kind)
     return replace(claim, sensors=whole, freedom=claim.freedom * len(whole) / len(claim.sensors))
 
@@ -190,13 +191,13 @@ def with_quieter_kinds_whole(state: SearchState, claims: tuple[NoiseClaim, ...])
 
 
 def is_quieter(state: SearchState, claims: Iterable[NoiseClaim]) -> bool:
-    """Whether all claims are that half of a kind or more scatters less than stated."""
+    """Whether every claim is of less scatter than stated, for at least half of its kind."""
     kinds = state.baseline.setting.kinds
     return all(c.ratio < 1 and 2 * len(c.sensors) >= kinds.count(c.kind) for c in claims)
 
 
 def sensors_of(claims: Iterable[NoiseClaim]) -> set[int]:
-    """All that some claims are about."""
+    """All sensors that the claims concern."""
     return {i for claim in claims for i in claim.sensors}
 
 

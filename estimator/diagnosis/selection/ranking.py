@@ -72,7 +72,9 @@ def _known(residuals: WhitenedResiduals, traces: tuple[Traces, ...], attributed:
 
 
 def on_other_sensors(state: SearchState, best: Detection, traces: Sequence[Traces]) -> list[Detection]:
-    """The same cause where it leads another sensor's own ranking and is significant beside the rest."""
+    """Detections of the same cause on other sensors, where it leads their own ranking and is significant beside the
+    rest.
+    """
     leads: dict[tuple[int, ...], Scored] = {}
     for scored, _ in best.ranking:
         leads.setdefault(scored.sensors, scored)

@@ -1,4 +1,4 @@
-"""Between the points of the grid: the best nonlinear parameters, and their error in the amplitudes' sigma."""
+"""Refinement between points of the grid: the best nonlinear parameters, and their error in the amplitudes' sigma."""
 
 from collections.abc import Sequence
 from dataclasses import replace

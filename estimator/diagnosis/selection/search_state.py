@@ -1,4 +1,4 @@
-"""Where the search for causes stands: the residuals, every signature that could explain them, and what was found.
+"""State of the search for causes: the residuals, every signature that could explain them, and the findings.
 
 The family-wise level is held over the whole catalogue: Bonferroni over causes, and over the places and shapes of each.
 """
@@ -60,15 +60,15 @@ class Detection:
 
 @dataclass(frozen=True, eq=False)
 class SearchState:
-    """Where the search stands, and at its end what was found. n rows, f directions."""
+    """State of the search, and in the end its result. n rows, f directions."""
 
     history: tuple[Baseline, ...]
     catalogue: tuple[Cause, ...]
     residuals: WhitenedResiduals
     traces: tuple[Traces, ...]
-    """Of the catalogue's causes."""
+    """Traces of the catalogue's causes."""
     patterns: tuple[Traces, ...]
-    """Of structure without a name."""
+    """Traces of structure without a name."""
     stated: Array
     """(R, m) variance of the noise as the file states it, or as the baseline leaves it, (m/s²)² ((rad/s)²)."""
     detections: tuple[Detection, ...] = ()
@@ -78,7 +78,7 @@ class SearchState:
     autocorrelated: tuple[Autocorrelation, ...] = ()
     """Sensors whose residual is not white, though no pattern fits it; where that is plain, no cause is named there."""
     courses: tuple[AppliedCourse, ...] = ()
-    """Of the applied vector, common to all sensors, that no cause describes."""
+    """Courses of the applied vector, common to all sensors, that no cause describes."""
     unlike_noise: tuple[UnlikeNoise, ...] = ()
     """Sensors whose scatter is not distributed as noise is."""
     noise_claims: tuple[NoiseClaim, ...] = ()
@@ -102,7 +102,7 @@ class SearchState:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of the sensors, in their order."""
+        """Names of the sensors, in their order."""
         return tuple(s.name for s in self.baseline.session.sensors)
 
     @property
@@ -117,7 +117,7 @@ class SearchState:
 
     @property
     def misfortunes(self) -> int:
-        """How many independent things were found: names, of which those of one event count once, and structures."""
+        """Number of independent effects found: names, those of one event counted once, and structures."""
         events = {(f.best.cause.identifier, f.event) for f in self.detections if f.event}
         return len(events) + sum(not f.event for f in self.detections) + len(self.structures)
 

@@ -54,7 +54,7 @@ CHANGED = 1e-3
 SUSPECTS = 3
 """Sensors, by either measure, of which it is asked whether they have changed."""
 STEPS = 25
-"""Of the multiples: each brings what is nothing to a half or less."""
+"""Steps for the multiples: each reduces a multiple that should be zero to a half or less."""
 SCALE, ZERO, SQUARE, AXES = [0], [1], [2], [3, 4]
 PARTS = (SCALE, SQUARE, AXES)
 """Parameters that have one spread, by their places; what all scale factors have in common is no part of it."""
@@ -66,7 +66,7 @@ class Settling:
 
     cause: SensorCause
     shapes: tuple[Shape, ...]
-    """Of every sensor that follows; the first bears how the whole changes with the nonlinear parameter, if it does."""
+    """Shapes of every sensor that follows; the first has the derivative by the nonlinear parameter, if there is one."""
     size: Array
     """(k,) β, m/s² (rad/s)."""
 
@@ -78,8 +78,10 @@ class Settling:
         return found
 
     def beside(self, session: CalibrationSession, history: Sequence[Baseline]) -> tuple[Baseline, list[Baseline]]:
-        """Its session and the earlier ones as `baselines` fits them, the session without the course, which is put back
-        into what is left: a course of hundreds of standard errors moves a fit by more than is linear."""
+        """The course's session and the earlier ones, fitted by `baselines`; the course is taken out of the session
+        before the fit and put back into its residuals: a course of hundreds of standard errors moves a fit by more than
+        is linear.
+        """
         columns = [shape.columns[..., 0] * size for shape, size in zip(self.shapes, self.size, strict=True)]
         effect = np.sum(columns, axis=0)
         scale = baseline_of(session).parameters.scale
@@ -89,11 +91,11 @@ class Settling:
         return replace(fitted, session=whole, residual=fitted.residual + effect, course=effect), earlier
 
     def holds_in(self, setting: Setting) -> bool:
-        """Whether it shows how far another session had settled."""
+        """Whether it tells how far another session had settled."""
         return self.cause.since_power_on and setting.switched_on is not None and self.cause.available(setting)
 
     def left_free(self, session: Baseline) -> Baseline:
-        """Its session fitted with sizes and nonlinear parameter as nuisances of which nothing is known."""
+        """The course's session fitted with sizes and nonlinear parameter as nuisances of which nothing is known."""
         columns = np.concatenate([s.columns for s in self.shapes], axis=-1)
         columns = columns / np.sqrt((columns**2).sum(axis=(0, 1)))
         constant = np.concatenate([session.constant, columns], axis=-1)
@@ -108,7 +110,7 @@ def settling(sessions: list[Baseline], catalogue: tuple[Cause, ...]) -> list[Set
 
 
 def settling_in(session: Baseline, catalogue: tuple[Cause, ...]) -> Settling | None:
-    """The same of one session."""
+    """The shared course of one session by itself; None where there is none."""
     residuals = WhitenedResiduals.of(session)
     fits = p_value(float(residuals.z @ residuals.z), max(residuals.freedom, 1)) > FITS
     if len(session.unstated) < 2 or (fits and not session.unstated.any()):
@@ -145,7 +147,7 @@ class Comparable:
     """A session as others see it. m sensors."""
 
     free: Baseline
-    """Its own course left free."""
+    """The session with its own course left free."""
     reach: Array
     """(m,) |o|, m/s² (rad/s), 0 of what has settled."""
     moves: bool
@@ -153,7 +155,7 @@ class Comparable:
 
     @classmethod
     def of(cls, session: Baseline, own: Settling | None, known: Sequence[Settling]) -> "Comparable":
-        """With its ``own`` course and all that are ``known`` of the unit."""
+        """The session with its ``own`` course and all that are ``known`` of the unit."""
         offsets = [c.offset(session.setting) for c in known if c is own or c.holds_in(session.setting)]
         reach = np.max([np.zeros(len(session.unstated)), *offsets], axis=0)
         return cls(session if own is None else own.left_free(session), reach, own is not None)
@@ -165,7 +167,7 @@ class Comparable:
         return not (self.moves or (self.reach > NEGLIGIBLE * sigma).any())
 
     def opened(self, session: Baseline, settled: "Comparable") -> Baseline:
-        """Its ``session`` with how far its parameters may lie off those of one that has settled more."""
+        """The ``session`` with the spread of its parameters about those of one that has settled more."""
         return session if self.has_settled else replace(session, unsettled=np.sqrt(variance_between(self, settled)))
 
 
@@ -207,7 +209,7 @@ def variance_between(one: Comparable, other: Comparable) -> Array:
 
 
 def at_places(value: Array, places: Sequence[int]) -> Array:
-    """(m, 5) of which some places of every sensor have its ``value`` (m,), and the others none."""
+    """(m, 5) array that holds every sensor's ``value`` (m,) in some places and zero in the others."""
     found = np.zeros((len(value), 5))
     found[:, places] = value[:, None]
     return found
@@ -215,21 +217,21 @@ def at_places(value: Array, places: Sequence[int]) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Difference:
-    """What two sessions tell of how the parameters of one lie off those of the other, P of them in standard errors."""
+    """Difference between the parameters of two sessions, P of them in standard errors."""
 
     information: Array
-    """(P, P) of its noise; none along what neither tells."""
+    """(P, P) information of its noise; none along directions that neither session sees."""
     score: Array
     """(P,) information times difference."""
 
     def without(self, directions: Array) -> "Difference":
-        """What is known of the rest where nothing is known along ``directions`` (P, k)."""
+        """The difference with everything along ``directions`` (P, k) taken as unknown."""
         along = self.information @ directions
         kept = along @ np.linalg.pinv(directions.T @ along, hermitian=True)
         return Difference(self.information - kept @ along.T, self.score - kept @ (directions.T @ self.score))
 
     def beyond(self, variance: Array) -> "Difference":
-        """The same where it varies by a ``variance`` (P,) more."""
+        """The difference where it varies by a ``variance`` (P,) more."""
         more = np.eye(len(variance)) + self.information * variance
         both = np.linalg.solve(more, np.column_stack([self.information, self.score]))
         return Difference(both[:, :-1], both[:, -1])

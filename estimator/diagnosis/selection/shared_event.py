@@ -79,7 +79,7 @@ def with_shared_event(
 
 @once
 def searched_with_event(start: SearchState) -> SearchState | None:
-    """What is found beside a shared course; None where there is none or the search takes it for noise."""
+    """Searches beside a shared course; None where there is none or the search takes it for noise."""
     event = shared_event(start)
     state = forward_selection(replace(start, detections=event)) if event else start
     if not any(f.event for f in state.detections):
@@ -112,8 +112,9 @@ def shared_event(start: SearchState) -> tuple[Detection, ...]:
 
 
 def is_apart(start: SearchState) -> bool:
-    """Whether sensors show something together, but each rather wanders by itself: whatever the noise is taken to be,
-    they share nothing then."""
+    """Whether sensors show a common course, but are likelier to wander each by itself: they then share nothing,
+    whatever the noise is taken to be.
+    """
     candidate = significant_course(start)
     return candidate is not None and has_likelier_rival(start, candidate[0])
 
@@ -132,7 +133,7 @@ def significant_course(start: SearchState) -> tuple[Followed, tuple[Scored, ...]
 
 
 def departures(start: SearchState) -> tuple[Detection, ...]:
-    """What the sensors show that depart from the likeliest course, each at the shape of its own."""
+    """The sensors that depart from the likeliest course, each with its own shape."""
     candidate = significant_course(start)
     if candidate is None:
         return ()
@@ -180,7 +181,7 @@ def likeliest(start: SearchState, near: Sequence[EventCourse]) -> Followed | Non
 
 
 def loadings(start: SearchState, course: EventCourse) -> Loadings:
-    """What the sensors show along a course, in the noise that it leaves where none is known."""
+    """The sensors' response along a course, in the noise that it leaves where none is known."""
     unit, kinds = unit_traces(course), start.baseline.setting.kinds
     along = unit.T @ start.residuals.z / noise_given_course(start.residuals, course, unit)
     return Loadings(unit.T @ unit, along, tuple(kinds[i] for i in course.sensors), counts_of(kinds))
@@ -227,8 +228,8 @@ def family_p_value(start: SearchState, event: Sequence[Scored]) -> float:
 
 
 def has_likelier_rival(start: SearchState, followed: Followed) -> bool:
-    """Whether something else is likelier than a course that sensors share: zeros that wander, each by itself, or the
-    whole block turned at one moment.
+    """Whether a rival is likelier than a shared course: zeros that each wander by themselves, or the whole block turned
+    at one moment.
 
     Zeros that wander are a misfortune more at least, but where a course has no formula or the noise is not known, which
     lets many things pass for a course. Beside zeros that wander a course must be plain. Where most sensors follow it,

@@ -1,1 +1,1 @@
-"""What causes would leave in the residuals, and the score of each signature."""
+"""Signatures of causes in the residuals, with the score of each."""

@@ -1,4 +1,4 @@
-"""An unknown course of the applied vector: what an error of stand, fixture or reference does that no cause describes.
+"""An unknown course of the applied vector: an error of stand, fixture or reference that no cause describes.
 
 Theory
 ------
@@ -47,20 +47,20 @@ class AppliedCourse:
     log_evidence: float
     """ln Bayes factor against no course, the mean over all that were tried."""
     order: str
-    """Along which it runs."""
+    """Order of the rows along which it runs."""
     components: tuple[str, ...]
-    """What changes, in words."""
+    """Components of the applied vector that change, in words."""
     value: Array
     """(R, c) most likely course: turns in rad, relative size dimensionless."""
 
     @property
     def p_value(self) -> float:
-        """Of as much evidence without any course: no more than 1/B (Markov)."""
+        """Chance of as much evidence without any course: no more than 1/B (Markov)."""
         return float(min(1.0, np.exp(-self.log_evidence)))
 
     @property
     def strength(self) -> float:
-        """In standard errors: those of a normal deviate that weighs as much."""
+        """Normal deviate, in standard errors, with the same evidence."""
         return normal_deviate(self.log_evidence)
 
 
@@ -99,7 +99,7 @@ def components(setting: Setting) -> list[Component]:
 
 
 def together(count: int) -> list[list[int]]:
-    """Which of so many components may change at once."""
+    """The sets of components, by index, that may change at once."""
     usual = [[0]] if count == 1 else [[0], [1], [0, 1], [0, 1, 2]]
     return usual + ([[3], [4], [3, 4]] if count > 3 else [])
 

@@ -137,7 +137,7 @@ def sensor_residual(residuals: WhitenedResiduals, attributed: Array, sensor: int
 def autocorrelation(
     residuals: WhitenedResiduals, attributed: Array, sensor: int, *, known: bool
 ) -> Autocorrelation | None:
-    """How much smoother than noise one sensor's residual runs along some order; None where it is too short to say.
+    """Tests whether one sensor's residual runs more smoothly than noise along some order; None where it is too short.
 
     ``attributed`` (n, f) orthonormal traces of the findings, dimensionless, which are projected out; ``known``: whether
     the noise is taken as stated.

@@ -39,7 +39,9 @@ def whitening(alike: Array, shown: Array, faint: float, group: Array | None) -> 
 
 
 def eigen_whitening(alike: Array, shown: Array, faint: float) -> tuple[Array, Array]:
-    """The same by the eigenvectors of each."""
+    """Whitens the columns of each signature by their eigenvectors; returns the whitening and the directions that
+    count.
+    """
     size, turn = (alike[:, 0], np.ones_like(alike)) if alike.shape[-1] == 1 else eigh(alike)
     live = (size > faint**2 * size[:, -1:]) & shown.any(axis=1, keepdims=True)
     inverse = np.where(live, 1 / np.sqrt(np.where(live, size, 1.0)), 0.0)

@@ -26,7 +26,7 @@ SIZES = 4.0 ** np.arange(1, 9, 2)
 """g: mean square sizes that are tried, the likeliest of which is taken."""
 
 TURNS = 12
-"""Of the regressions by turns; two courses that can be distinguished at all separate by a factor each turn."""
+"""Most alternations between the two regressions; two courses that can be told apart separate by a factor each time."""
 
 MOST = 30.0
 """ln n at most: beyond it no course is believed, and n would no longer be a number."""
@@ -46,11 +46,11 @@ class FreeCourse:
     log_evidence: float
     """ln B, against no course."""
     tried: float
-    """n, among how many shapes v counts as chosen."""
+    """n, the number of shapes that v counts as chosen from."""
 
     @classmethod
     def of(cls, trace: Array, z: Array, m: int) -> "FreeCourse":
-        """Of traces (n, m·w) of every sensor's waves in turn and residuals z (n,), standard errors."""
+        """The course of traces (n, m·w) of every sensor's waves in turn and residuals z (n,), standard errors."""
         gram, along = trace.T @ trace, trace.T @ z
         w = trace.shape[1] // m
         apart = np.linalg.solve(gram + RIDGE * np.eye(len(gram)), along).reshape(m, w)

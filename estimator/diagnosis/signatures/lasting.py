@@ -16,9 +16,9 @@ MANY = 16
 """Sensors from which on effects are not tried both as lasting and as new: their traces would take gigabytes."""
 
 RECORDED = frozenset({"time", "temperature", "vibration"})
-"""What differs between sessions of one schedule, of what a cause may need."""
+"""Needs of a cause that differ between sessions of one schedule."""
 NOT_SEEN = RECORDED | {"parameters"}
-"""Of a setting, what does not tell earlier sessions from one another: all are seen at the parameters of now."""
+"""Attributes of a setting that do not tell earlier sessions apart: all are seen at the present parameters."""
 
 
 def traces_of(residuals: WhitenedResiduals, causes: Iterable[Signature]) -> list[Traces]:

@@ -1,4 +1,4 @@
-"""What is known of a sensor whose residual is more than the stated noise or not white."""
+"""Results about a sensor whose residual exceeds the stated noise or is not white."""
 
 from dataclasses import dataclass
 
@@ -27,11 +27,11 @@ class ExcessVariance:
     p_family: float
     """Family-wise p-value."""
     doubtful: bool = False
-    """Whether it is not quite distributed as noise is."""
+    """Whether its distribution departs somewhat from that of noise."""
 
     @property
     def strength(self) -> float:
-        """In standard errors: those of a normal deviate that weighs as much."""
+        """Normal deviate, in standard errors, with the same evidence."""
         return normal_deviate(self.log_evidence)
 
 
@@ -56,12 +56,12 @@ class Autocorrelation:
 
     @property
     def p_value(self) -> float:
-        """Of a residual at least as smooth and as large, were there nothing but the noise."""
+        """Chance of a residual at least as smooth and as large from noise alone."""
         return float(min(1.0, CHANCE * np.exp(-self.log_evidence - self.excess_log_evidence)))
 
     @property
     def strength(self) -> float:
-        """In standard errors: those of a normal deviate that weighs as much."""
+        """Normal deviate, in standard errors, with the same evidence."""
         return normal_deviate(self.log_evidence + self.excess_log_evidence)
 
 
@@ -71,17 +71,19 @@ class UnlikeNoise:
 
     sensor: int
     p_value: float
-    """Of normal noise at least as far from normal (Shapiro & Wilk 1965), or as much like switching (`switching`)."""
+    """Chance of normal noise at least as far from normal (Shapiro & Wilk 1965), or as much like switching
+    (`switching`).
+    """
     largest: float
     """The largest residual over their root mean square."""
     of_its_kind: bool = True
-    """Whether the others of its kind, where it states no noise, scatter as it does."""
+    """Whether the others of its kind scatter likewise, where it states no noise."""
     switches: bool = False
     """Whether its readings switch between levels from row to row."""
 
     @property
     def strength(self) -> float:
-        """In standard errors: those of a normal deviate as unlikely."""
+        """Normal deviate, in standard errors, as unlikely."""
         return float(-ndtri(max(self.p_value, 1e-300)))
 
 
@@ -91,7 +93,7 @@ class NoiseClaim:
 
     kind: str
     sensors: tuple[int, ...]
-    """In a session's order."""
+    """Numbers of the sensors in the session's order."""
     ratio: float
     """Variance over the stated one."""
     freedom: float

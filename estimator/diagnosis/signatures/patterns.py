@@ -48,10 +48,10 @@ class Pattern(Signature):
     units = ()
     advice = "Look at the residuals there; no known cause has this pattern."
     description = ""
-    """What is said in place of the sentence where one is counted."""
+    """Description of the pattern in place of the sentence, for shapes whose parameter is 1."""
 
     def where(self, shape: Shape) -> str:
-        """Where the pattern lives, in words."""
+        """The place of the pattern, in words."""
         if self.description and shape.nonlinear == (1.0,):
             return self.description
         return say(self.sentence, **{str(k): f"{value:g}" for k, value in enumerate(shape.nonlinear)})

@@ -56,13 +56,13 @@ class Nuisance:
         return np.asarray(self.columns[self.number])
 
     def at(self, chosen: Array | Sequence[int]) -> "Nuisance":
-        """Those beside some of the traces, by number or (S,) bool."""
+        """The columns beside some of the traces, by number or (S,) bool."""
         return Nuisance(self.columns, self.number[chosen])
 
 
 @dataclass(frozen=True, eq=False)
 class Products:
-    """Of S traces of q amplitudes in K parts, in units of the squared standard error per unit amplitude."""
+    """Products of S traces of q amplitudes in K parts, in units of the squared standard error per unit amplitude."""
 
     square: Array
     """(K, S, q, q) X'X."""
@@ -71,7 +71,7 @@ class Products:
 
     @classmethod
     def of(cls, residuals: WhitenedResiduals, columns: Array) -> "Products":
-        """Of traces ``columns`` (S, n, q), standard errors per unit amplitude."""
+        """The products of traces ``columns`` (S, n, q), standard errors per unit amplitude."""
         R, m = residuals.baseline.residual.shape
         S, n, q = columns.shape
         by_sensor = columns[:, : R * m].reshape(S, R, m, q)
@@ -96,12 +96,13 @@ class Products:
 
     @classmethod
     def together(cls, parts: Sequence["Products"]) -> "Products":
-        """Of several traces of equally many amplitudes."""
+        """Joins the products of several traces of equally many amplitudes."""
         return cls(*(np.concatenate(x, axis=1) for x in zip(*((p.square, p.along) for p in parts), strict=True)))
 
     def continued(self, change: Array, z: Array) -> "Products":
-        """The same with further columns that show in the last part alone, where all are ``change`` (S, P, q + …),
-        standard errors per unit, of P rows with the residuals ``z`` (P,)."""
+        """The products with further columns that show in the last part alone, where all columns are ``change`` (S, P, q
+        + …), standard errors per unit, of P rows with the residuals ``z`` (P,).
+        """
         K, S, q = self.along.shape
         square, along = np.zeros((K, S, *change.shape[2:] * 2)), np.zeros((K, S, change.shape[2]))
         square[:-1, :, :q, :q], along[:-1, :, :q] = self.square[:-1], self.along[:-1]
@@ -109,7 +110,7 @@ class Products:
         return Products(square, along)
 
     def at(self, chosen: Array | Sequence[int]) -> "Products":
-        """Of some of the traces, by number or (S,) bool."""
+        """The products of some of the traces, by number or (S,) bool."""
         return Products(self.square[:, chosen], self.along[:, chosen])
 
 
@@ -135,13 +136,13 @@ class Projected:
 
     @cached_property
     def energy(self) -> Array:
-        """(m,) dimensionless: of what the findings leave of each sensor's readings."""
+        """(m,) energy that the findings leave of each sensor's readings, dimensionless."""
         m = len(self.residuals.baseline.unstated)
         return (self.z[: self.residuals.baseline.residual.size].reshape(-1, m) ** 2).sum(axis=0)
 
     @cached_property
     def freedom(self) -> Array:
-        """(m,) degrees of freedom of the same, dimensionless."""
+        """(m,) degrees of freedom of that energy."""
         m = len(self.residuals.baseline.unstated)
         known = self.residuals.row_freedom[: self.residuals.baseline.residual.size].reshape(-1, m).sum(axis=0)
         return np.asarray(known - np.trace(self.square[:m], axis1=1, axis2=2))
@@ -171,18 +172,18 @@ class Projected:
     def __call__(
         self, products: Sequence[Products], columns: Sequence[Array], nuisances: Sequence[Nuisance | None] | None = None
     ) -> "RemainingProducts":
-        """What the findings leave of the products of traces, ``columns`` (S, n, q) each, standard errors per unit."""
+        """Products of traces after projection, from their ``columns`` (S, n, q) each, standard errors per unit."""
         each = [self.shared(x, b) for x, b in zip(columns, nuisances or [None] * len(columns), strict=True)]
         return RemainingProducts(self, tuple(products), np.concatenate(each, axis=2))
 
 
 @dataclass(frozen=True, eq=False)
 class RemainingProducts:
-    """What the findings leave of the products of S traces of q amplitudes, worked out as far as it is asked for."""
+    """Products of S traces of q amplitudes with the findings projected out, worked out only as far as needed."""
 
     projected: Projected
     before: tuple[Products, ...]
-    """Of the traces, some of them each."""
+    """Products before projection, each of some of the traces."""
     shared: Array
     """(K, f, S, q) standard errors per unit amplitude: C."""
 
@@ -196,7 +197,7 @@ class RemainingProducts:
 
     @cached_property
     def parts(self) -> Products:
-        """The same in every part."""
+        """The products after projection in every part."""
         before = self.before[0] if len(self.before) == 1 else Products.together(self.before)
         if not self.shared.shape[1]:
             return before
@@ -208,7 +209,7 @@ class RemainingProducts:
         return Products(before.square - cross - np.swapaxes(cross, -1, -2), along)
 
     def at(self, chosen: Array) -> "RemainingProducts":
-        """Of some of the traces, by rising number or (S,) bool."""
+        """The products of some of the traces, by rising number or (S,) bool."""
         ends = np.cumsum([0, *(p.along.shape[1] for p in self.before)])
         number = np.arange(ends[-1])[chosen]
         of = np.searchsorted(ends, number, side="right") - 1

@@ -30,7 +30,9 @@ def in_unknown_noise(baseline: Baseline, sensor: Array) -> Array:
 
 
 def shared(baseline: Baseline, energy: Array, freedom: Array, sharing: Array) -> tuple[Array, Array]:
-    """(S,) of the scatter of sensors (S, m) that share the estimate of a row's direction, as of one."""
+    """(S,) energy and degrees of freedom of the scatter of sensors (S, m) that share the estimate of a row's direction,
+    as of one.
+    """
     total, free = (energy * sharing).sum(axis=-1), (freedom * sharing).sum(axis=-1)
     if baseline.expected_ratio is None:
         return total, free
@@ -39,7 +41,7 @@ def shared(baseline: Baseline, energy: Array, freedom: Array, sharing: Array) ->
 
 
 def pooled(baseline: Baseline, energy: Array, freedom: Array) -> tuple[Array, Array]:
-    """(S,) of the scatter that signatures common to all sensors (S, m) stand out of.
+    """(S,) energy and degrees of freedom of the scatter that signatures common to all sensors (S, m) stand out of.
 
     The variance is the mean of the sensors' s², E/f where a sensor's noise is unknown and 1 where it is stated; its
     degrees of freedom are Satterthwaite's, (Σ sᵢ²)² / Σ sᵢ⁴/fᵢ over the unknown. Every sensor counts alike, so that

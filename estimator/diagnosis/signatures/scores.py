@@ -59,7 +59,7 @@ class ScoreFit:
     """S signatures of q amplitudes, each fitted alone to what the findings leave. K parts of the rows."""
 
     products: Products | RemainingProducts
-    """Of what the findings leave."""
+    """Products with the findings projected out."""
     value: Array
     """(S, q) amplitudes, in the causes' SI units."""
     power: Array
@@ -138,12 +138,12 @@ class Scores:
     freedom: Array
     """(k,) int, its degrees of freedom."""
     p_value: Array
-    """(k,) of this shape alone."""
+    """(k,) p-value of this shape alone."""
     log_evidence: Array
     """(k,) ln Bayes factor, the share of the cause's prior included."""
 
     def scored(self, k: int) -> Scored:
-        """One of them."""
+        """The k-th shape with its score."""
         traces, s = self.traces[self.cause[k]], int(self.shape[k])
         shape, trace = traces.whole(s)
         return Scored(
@@ -160,7 +160,7 @@ class Scores:
         )
 
     def group(self, k: int) -> Group:
-        """What is named."""
+        """The group of the k-th shape: its cause and the number of its sensor."""
         return self.traces[self.cause[k]].cause.identifier, (() if self.sensor[k] < 0 else (int(self.sensor[k]),))
 
     def ranked(self) -> list[tuple[int, float]]:
@@ -186,7 +186,7 @@ def score(residuals: WhitenedResiduals, traces: Sequence[Traces], attributed: Ar
 
 
 def scores(residuals: WhitenedResiduals, traces: Sequence[Traces], attributed: Array) -> Scores:
-    """The same as arrays; causes of equally many amplitudes are scored as one."""
+    """The scores of every shape as arrays; causes of equally many amplitudes are scored as one."""
     projected = Projected.of(residuals, attributed)
     by_width = sorted((k for k, t in enumerate(traces) if t.shapes), key=lambda k: traces[k].width)
     parts = [

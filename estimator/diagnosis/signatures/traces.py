@@ -1,4 +1,4 @@
-"""What a signature leaves in the residuals: the traces of a cause's shapes, and one shape with its score."""
+"""Traces of signatures in the residuals: those of a cause's shapes, and one shape with its score."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -14,7 +14,7 @@ INVISIBLE = 1e-3
 thousand times what is seen of it, beyond what the linearised model describes."""
 
 Group = tuple[str, tuple[int, ...]]
-"""What is named: a cause and the numbers of its sensors."""
+"""A cause and the numbers of its sensors: the thing that is named."""
 
 
 def sensors_of(shapes: Sequence[Shape]) -> Array:
@@ -40,11 +40,13 @@ class Traces:
     places: int
     """Number of shapes that are visible at all: what the cause's prior is shared among."""
     products: Products
-    """Of the columns, those beside them included, with one another and with the residuals."""
+    """Products of the columns, those beside them included, with one another and with the residuals."""
     nuisance: Nuisance | None = None
     """Columns that are no amplitudes of the cause, but left open; None where there are none."""
     shared: bool = False
-    """Whether they are of a course that several sensors show: that it acts in the session is shown by all of them."""
+    """Whether they belong to a course that several sensors show: all of them together show that it acts in the
+    session.
+    """
 
     @property
     def common(self) -> bool:
@@ -92,15 +94,15 @@ class Scored:
     statistic: float
     """Equivalent χ²."""
     freedom: int
-    """Its degrees of freedom."""
+    """Degrees of freedom of the statistic."""
     log_evidence: float
     """ln Bayes factor, the share of the cause's prior included."""
     p_value: float
-    """Of this shape alone."""
+    """p-value of this shape alone."""
     places: int
     """Number of shapes the cause was tried with."""
     shared: bool = False
-    """As in `Traces`."""
+    """`Traces.shared` of its traces."""
 
     @property
     def sensors(self) -> tuple[int, ...]:
@@ -109,12 +111,12 @@ class Scored:
 
     @property
     def group(self) -> Group:
-        """What is named: the cause and its sensors."""
+        """The cause and its sensors."""
         return self.cause.identifier, self.sensors
 
     @property
     def strength(self) -> float:
-        """In standard errors."""
+        """Strength in standard errors."""
         return float(np.sqrt(self.statistic))
 
     def columns_in(self, setting: Setting) -> Array | None:

@@ -1,4 +1,4 @@
-"""Every zero wanders by itself, or the block turns: what an event that sensors share is held against.
+"""Rivals of an event that sensors share: every zero wanders by itself, or the block turns.
 
 Theory
 ------
@@ -41,13 +41,13 @@ class Wandering:
     square: Array
     """(q,) eigenvalues of X'X."""
     turn: Array
-    """(q, q) its eigenvectors."""
+    """(q, q) eigenvectors of X'X."""
     along: Array
     """(q,) X'z along them."""
 
     @classmethod
     def of(cls, residuals: WhitenedResiduals, waves: Array) -> "Wandering":
-        """Of every sensor the same ``waves`` (R, w), dimensionless, in its standard errors."""
+        """The wandering in which every sensor has the same ``waves`` (R, w), dimensionless, in its standard errors."""
         variance = residuals.baseline.variance
         rows, m = variance.shape
         columns = np.zeros((rows, m, m, waves.shape[1]))
@@ -62,7 +62,7 @@ class Wandering:
         return (SPREADS[:, None] * self.along**2 / grown).sum(axis=1), np.log(grown).sum(axis=1)
 
     def beside(self, z: Array, trace: Array, sizes: Array) -> tuple[Array, Array]:
-        """(G, S) what traces (n, k) of amplitudes N(0, s), ``sizes`` (S,), add to both at every spread."""
+        """(G, S) contributions of traces (n, k) of amplitudes N(0, s), ``sizes`` (S,), to both at every spread."""
         cross, gram, along = self.turn.T @ (self.trace.T @ trace), trace.T @ trace, trace.T @ z
         shrunk = SPREADS[:, None] / (1 + SPREADS[:, None] * self.square)
         pairs = [

@@ -39,11 +39,11 @@ NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 
 @dataclass(frozen=True)
 class Site:
-    """Where the service is, and what it holds."""
+    """Address of the service, and its contents."""
 
     url: str
     first_session: str
-    """Of the unit that is unfit since."""
+    """Session of the unit that has been unfit since."""
     unfit_session: str
     loose_session: str
     swayed_session: str
@@ -104,7 +104,7 @@ def chromium() -> Iterator[Browser]:
 
 @dataclass
 class Witness:
-    """What went on while pages were open."""
+    """Record of events while pages were open."""
 
     complaints: list[str] = field(default_factory=list)
     """Errors and warnings of the console, failed requests."""
@@ -122,7 +122,9 @@ class Witness:
             self.complaints.append(message.text)
 
     def _failed(self, request: Request) -> None:
-        """What the browser itself let go, leaving a page before its icon came, is nobody's fault."""
+        """Records a failed request; one that the browser cancelled, leaving a page before its icon came, is no
+        failure.
+        """
         if request.failure != "net::ERR_ABORTED":
             self.complaints.append(f"failed: {request.url}: {request.failure}")
 

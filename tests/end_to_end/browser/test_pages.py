@@ -48,7 +48,7 @@ PATHS = (
     "/units/nobody",
 )
 LONG_AND_ALIKE = "/api-reference"
-"""Its folds stay closed: axe takes a minute for hundreds that are made by one loop."""
+"""A page whose folds stay closed: axe takes a minute for hundreds that are made by one loop."""
 MORE = (
     "/?q=BA&condition=fail",
     "/units/GB-004",
@@ -85,35 +85,35 @@ class Seen:
 
     complaints: tuple[str, ...]
     addresses: tuple[str, ...]
-    """Of its requests."""
+    """Addresses of its requests."""
     received: float
     """Bytes on the wire."""
     overflow: tuple[int, ...]
     """Pixels by which it is wider than the screen, at each width."""
     levels: tuple[int, ...]
-    """Of its headings, in order."""
+    """Levels of its headings, in order."""
     nameless: int
     """Controls without a label."""
     height: int
-    """Of the page as it opens on a wide screen, pixels."""
+    """Height of the page as it opens on a wide screen, pixels."""
     barriers: tuple[str, ...]
-    """What axe finds on a wide screen with everything unfolded, in light colours."""
+    """Barriers that axe finds on a wide screen with everything unfolded, in light colours."""
 
 
 IN_RUSSIAN = ("/", "/units/BA-017", "/sessions/{unfit}", "/sessions/{swayed}/diagnosis", "/flags", "/upload", "/help")
-"""Its words are longer."""
+"""Pages that are checked in Russian, whose words are longer."""
 OVERFLOW = "document.documentElement.scrollWidth - window.innerWidth"
 LEVELS = "[...document.querySelectorAll('h1,h2,h3')].map((h) => +h.tagName[1])"
 CONTROLS = "[...document.querySelectorAll('input:not([type=hidden]),select')]"
 AXE = (files(axe_playwright_python) / "axe.min.js").read_text(encoding="utf-8")
 FAULTS: dict[str, Any] = {"resultTypes": ["violations"]}
-"""What axe describes: of what is in order it would name every element, which takes it as long as looking."""
+"""Restricts axe's report to violations: it would otherwise name every sound element, which takes as long as looking."""
 COLOURS = FAULTS | {"runOnly": ["color-contrast"]}
-"""What dark colours decide, of axe's rules."""
+"""Restricts axe to the rules that dark colours decide."""
 COLOURLESS = FAULTS | {"rules": {"color-contrast": {"enabled": False}}}
 """All others: no colour depends on the language, and hardly any on the width."""
 EVERYTHING, NARROW = "html", ".cards, .filter"
-"""What is looked at, and of it what is shown or coloured otherwise on a narrow screen, where rows become cards."""
+"""Selectors: everything, and the parts shown or coloured differently on a narrow screen, where rows become cards."""
 Scan = tuple[Literal["light", "dark"], dict[str, Any], str]
 """Colours, what axe looks for, and where."""
 FIRST: Scan = ("light", FAULTS, EVERYTHING)
@@ -121,7 +121,7 @@ SCANS: dict[int, tuple[Scan, ...]] = {
     390: (("light", COLOURLESS, EVERYTHING), ("light", COLOURS, NARROW), ("dark", COLOURS, NARROW)),
     1280: (("dark", COLOURS, EVERYTHING),),
 }
-"""What may differ from the first look, by width."""
+"""Scans of the parts that may differ from the first look, by width."""
 VIOLATIONS = """async ([place, options]) => {
   if (!document.querySelector(place)) return [];
   const found = await axe.run(place, options);
@@ -157,7 +157,7 @@ def visit(browser: Browser, site: Site, path: str) -> Seen:
 
 
 def barriers_of(page: Page, scans: Iterable[Scan]) -> list[str]:
-    """What axe finds on a page, with the element."""
+    """Barriers that axe finds on a page, with the element."""
     page.evaluate(AXE)
     found = []
     for scheme, rules, place in scans:

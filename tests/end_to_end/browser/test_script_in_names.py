@@ -27,12 +27,12 @@ STAND, TYPE = f"stand {SCRIPT}", f"type {SCRIPT}"
 
 
 BREAK = "\u200b"
-"""Where a long word may be broken."""
+"""Zero-width space, at which a long word may be broken."""
 
 
 @dataclass(frozen=True)
 class Planted:
-    """Where hostile names are shown."""
+    """Addresses that show hostile names."""
 
     url: str
     paths: tuple[str, ...]

@@ -40,7 +40,7 @@ class Case:
 
     @property
     def covariance(self) -> Array:
-        """Of the error."""
+        """Covariance of the error."""
         n = 2 + len(self.error)
         return self.result.covariance[2:n, 2:n]
 

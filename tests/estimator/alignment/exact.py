@@ -26,12 +26,12 @@ Array = NDArray[Any]
 LATITUDE, G, EARTH = np.radians(47.0), 9.808, 7.292115e-5
 FINE = 0.01
 PLACES = ((0.04, -0.08, 0.1), (-0.06, 0.05, 0.0), (0.1, 0.1, 0.1))
-"""Of three accelerometers, m from the turn axis."""
+"""Positions of three accelerometers, m from the turn axis."""
 
 
 @dataclass(frozen=True)
 class Run:
-    """How the table is run and what is wrong."""
+    """Motion of the table, and errors of the block."""
 
     stops: tuple[float, ...] = (0.0, 180.0)
     """degrees."""
@@ -42,9 +42,9 @@ class Run:
     """s in which the table comes up to its rate, as a raised cosine."""
     row: float = 0.1
     places: tuple[tuple[float, float, float], ...] = ((0.0, 0.0, 0.0),) * 3
-    """Of the accelerometers, m from the turn axis."""
+    """Positions of the accelerometers, m from the turn axis."""
     noise: float = 5e-5
-    """Of an accelerometer, m/s²/√Hz."""
+    """Noise of an accelerometer, m/s²/√Hz."""
     wobble: float = 0.5
     """One sigma of the axis' direction from stop to stop, arcsec."""
     delay: float = 0.0
@@ -54,9 +54,9 @@ class Run:
     rough: float = 1.0
     """Noise of the accelerometers while the table turns, over that at rest."""
     zeros: tuple[float, float, float] = (3e-4, -2e-4, 1e-4)
-    """Of the accelerometers, m/s²."""
+    """Zeros of the accelerometers, m/s²."""
     lean: tuple[float, float] = (2e-4, -4e-4)
-    """Of the turn axis about east and north, rad."""
+    """Lean of the turn axis about east and north, rad."""
 
 
 def course(run: Run) -> tuple[Array, Array]:

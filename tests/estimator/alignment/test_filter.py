@@ -48,7 +48,9 @@ def test_errors_are_as_large_as_their_covariance_says(name: str) -> None:
 
 
 def test_a_block_at_rest_reads_gravity_and_the_earth_s_rotation() -> None:
-    """In any heading and at any length of row: C turns with the Earth, so the mean over a row is that at any time."""
+    """This holds in any heading and at any length of row: C turns with the Earth, so the mean over a row is that at any
+    time.
+    """
     attitude = true_attitude(TurntableProgramme(angles=(0.3,), dwell=20.0, row=5.0), Truth(), np.zeros((1, 2)))
     motion = true_motion(attitude, 5.0, LATITUDE, G)
     east_north_up = attitude[0].T @ earth_rate(LATITUDE)

@@ -18,7 +18,7 @@ AWAY = Run(places=PLACES)
 
 
 def errors(found: AlignmentResult, run: Run) -> Array:
-    """Of ∇_x and ∇_y, in standard errors."""
+    """Errors of ∇_x and ∇_y, in standard errors."""
     sigma = np.sqrt(np.diag(found.covariance)[8:10])
     return np.asarray((found.estimate[8:10] - run.zeros[:2]) / sigma)
 

@@ -1,4 +1,4 @@
-"""What an alignment can see: E not by velocity alone, however it is turned; E with the turntable's direction."""
+"""Observability in an alignment: E not by velocity alone, however it is turned; E with the turntable's direction."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ TURNS = {
 
 
 def told(angles: tuple[float, ...], model: InertialModel) -> Expected:
-    """What 15 minutes tell."""
+    """Expected result of 15 minutes."""
     return expected(planned_path(TurntableProgramme(angles, 900 / len(angles), row=1.0), LATITUDE, G), SETTING, model)
 
 

@@ -74,7 +74,7 @@ def test_nothing_is_named_in_a_sound_session() -> None:
 
 @pytest.mark.parametrize("noises", [2.0, 25.0])
 def test_whole_counts_coarser_than_the_noise_are_not_stuck(noises: float) -> None:
-    """At one rate every reading may be the same count."""
+    """Every reading at one rate may be the same count."""
     for seed in range(8):
         rng = np.random.default_rng(seed)
         fine = table(rng, 3 + seed % 4)
@@ -114,7 +114,7 @@ def test_turns_in_which_a_gyro_stood_still_measure_nothing() -> None:
 
 @pytest.mark.parametrize("upright", [False, True])
 def test_a_table_that_takes_time_to_reach_its_rate_is_no_sensors_fault(upright: bool) -> None:
-    """Of a block with one gyro along the turn axis nobody else shows it."""
+    """No other sensor shows it in a block with one gyro along the turn axis."""
     sound = table(np.random.default_rng(6), 4)
     sensors = tuple(replace(s, nominal_axis=np.eye(3)[i % 3]) if upright else s for i, s in enumerate(sound.sensors))[
         : 3 if upright else 4

@@ -15,7 +15,9 @@ def noise(n: int, interval: float, rng: np.random.Generator, **sizes: float) -> 
 
 
 def flicker(n: int, rng: np.random.Generator) -> Array:
-    """(n,) of one-sided spectrum 1/(πf): white noise through h_k = h_{k−1}·(k − ½)/k (Kasdin, Proc. IEEE 83, 802)."""
+    """(n,) noise of one-sided spectrum 1/(πf): white noise through h_k = h_{k−1}·(k − ½)/k (Kasdin, Proc. IEEE 83,
+    802).
+    """
     k = np.arange(1, n)
     response = np.concatenate([[1.0], np.cumprod((k - 0.5) / k)])
     spectrum = np.fft.rfft(response, 2 * n) * np.fft.rfft(rng.standard_normal(n), 2 * n)

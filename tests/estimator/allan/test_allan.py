@@ -20,7 +20,7 @@ SENSOR = read_session(builders.raw_log()).sensors[0]
 
 
 def found(*rests: Array) -> BlockNoise:
-    """Of channels (n, m) at rest."""
+    """Noise of channels (n, m) at rest."""
     sensors = tuple(replace(SENSOR, name=f"A{i}") for i in range(rests[0].shape[1]))
     result = allan_terms(Rests(sensors, rests, INTERVAL))
     assert result is not None
@@ -33,7 +33,7 @@ def channels(count: int, n: int, seed: int, **sizes: float) -> Array:
 
 
 def covered(sensors: tuple[SensorNoise, ...], name: str, truth: float) -> tuple[int, int]:
-    """In how many the term is decided, and in how many of these its interval holds the truth."""
+    """Number of sensors in which the term is decided, and number of these whose interval holds the truth."""
     intervals = [interval for s in sensors if (interval := s.term(name).interval()) is not None]
     return len(intervals), sum(low <= truth <= high for low, high in intervals)
 
@@ -48,7 +48,7 @@ def test_the_variance_is_the_one_of_its_definition() -> None:
 
 @pytest.mark.parametrize(("term", "factor", "share"), [(1, 1, 2 / 3), (1, 64, 1.5 / 64), (3, 64, 1 / 64)])
 def test_the_degrees_of_freedom_are_those_of_the_literature(term: int, factor: int, share: float) -> None:
-    """Of a long record: NIST SP 1065, table 5, white and random walk frequency noise, per sample."""
+    """NIST SP 1065, table 5, for a long record: white and random walk frequency noise, per sample."""
     n = 65_536
     seen = variances([np.random.default_rng(1).standard_normal((n, 1))], 1.0)
     assert seen is not None
@@ -145,7 +145,7 @@ def test_in_service_only_what_has_the_size_of_gravity_is_a_rest() -> None:
 
 
 def test_in_service_what_shakes_is_no_rest() -> None:
-    """On the sum of its axes by 0.25 m/s², twice a second: steady, and of gravity's size on average."""
+    """It shakes on the sum of its axes by 0.25 m/s², twice a second: steady, and of gravity's size on average."""
     session = read_session(builders.raw_log(still=600))
     flown = replace(session, programme=IN_SERVICE, position=None)
     shake = 0.25 * np.sin(2 * np.pi * 2.0 * INTERVAL * np.arange(len(flown.readings)))

@@ -19,7 +19,7 @@ from tests.estimator.calibration.cases import Case
 
 CONSTANT = ("theta_x", "theta_y", "alpha", "latitude", "meridian", "count_time")
 PLAUSIBLE = 0.1
-"""What an element could be at all, dimensionless: the weak prior that the results state."""
+"""Plausible size of an element, dimensionless: the weak prior that the results state."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +35,7 @@ class Happened:
 
 
 def applied(session: CalibrationSession, kind: str, e: Happened) -> Array:
-    """(R, 3) what the stand applies, block axes: rotations about level Z and Y, then X (raise), then Y (turn).
+    """(R, 3) vectors that the stand applies, block axes: rotations about level Z and Y, then X (raise), then Y (turn).
 
     The head points south, so that X is west; raised by A above the horizon it is χ = A + φ − 90° above the equator.
     """
@@ -73,7 +73,7 @@ def nudged(p: SensorParameters, sensor: int, element: int, step: float) -> Senso
 
 
 def covariance(case: Case) -> Array:
-    """(R m, R m) of all readings of a session on the stand."""
+    """(R m, R m) covariance of all readings of a session on the stand."""
     session, p = case.schedule, case.truth
     pulsed = np.array([session.count_time is not None and s.kind != ACCELEROMETER for s in session.sensors])
     own = np.where(pulsed, case.noise**2 + 1 / 6, case.noise**2)

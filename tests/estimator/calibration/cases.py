@@ -96,9 +96,9 @@ class Trials:
     errors: Array
     """(n, p) estimate minus truth, SI."""
     covariance: Array
-    """(n, p, p) as stated."""
+    """(n, p, p) covariance as stated."""
     p_values: Array
-    """(n,) of the fits."""
+    """(n,) p-values of the fits."""
     converged: bool
     """All of them."""
     seen: Array

@@ -18,7 +18,7 @@ G = 9.81
 
 @dataclass(frozen=True, eq=False)
 class Truth:
-    """What the sensors really are, in the frame in which their axes show no net turn against the nominal ones."""
+    """True parameters of the sensors, in the frame in which their axes show no net turn against the nominal ones."""
 
     nominal: np.ndarray
     axes: np.ndarray
@@ -84,7 +84,7 @@ def session(true, directions, *, noise=1e-4, stated=True, rng=None, gyros=0, **c
 
 
 def with_gyros(measured, gyros, rng, bias=1e-3, noise=1e-6):
-    """The same session with resting gyros of a known bias after the accelerometers."""
+    """The session with resting gyros of a known bias after the accelerometers."""
     if not gyros:
         return measured
     R = len(measured.readings)

@@ -1,4 +1,4 @@
-"""What cannot be calibrated, or only in part, is said with its place and with what to add."""
+"""Messages about schedules that cannot be calibrated, or only in part, name the place and the rows to add."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""What every calibrator must do, on every kind of session: the contract of `estimator.calibrate`.
+"""The contract of `estimator.calibrate` for every calibrator, on every kind of session.
 
 Statistical limits are 6σ for the third of a million errors of all cases together, 0.1 % for tests on sums.
 """

@@ -1,4 +1,4 @@
-"""What a session does not determine is said, with the combinations that it does determine."""
+"""Parameters that a session does not determine are reported, with the combinations that it does determine."""
 
 from dataclasses import replace
 

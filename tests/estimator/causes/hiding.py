@@ -64,7 +64,7 @@ def scene(kind: str, history: int) -> Scene:
 
 
 def scene_for(identifier: str) -> Scene:
-    """Where a cause can be seen."""
+    """A scene in which a cause can be seen."""
     known = cause(identifier)
     if identifier == "g-sensitivity":
         return scene("orientations", 0)
@@ -99,7 +99,7 @@ def with_readings(session: CalibrationSession, more: Array) -> CalibrationSessio
 
 
 def change(identifier: str, where: Scene) -> Array:
-    """(R, m) what the cause adds at the input, m/s² or rad/s, scaled to `STRENGTH`."""
+    """(R, m) change of the input by the cause, m/s² or rad/s, scaled to `STRENGTH`."""
     world, shape = where.world, SHAPES.get(identifier, ())
     before = world.inputs(world.vectors())
     k = 1e-9 * np.array(DIRECTION.get(identifier, np.ones(len(cause(identifier).units))))

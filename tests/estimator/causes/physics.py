@@ -27,7 +27,7 @@ class World:
     truth: SensorParameters
 
     def vectors(self, happened: Happened | None = None) -> Array:
-        """(R, m, 3) what is applied, block axes, m/s² or rad/s."""
+        """(R, m, 3) applied vectors, block axes, m/s² or rad/s."""
         found = {k: applied(self.session, k, happened or Happened({})) for k in {s.kind for s in self.session.sensors}}
         return np.stack([found[s.kind] for s in self.session.sensors], axis=1)
 
@@ -59,7 +59,7 @@ def term(added: Callable[["Seen", tuple[float, ...]], tuple[Array, ...]]) -> Act
 
 
 class Seen:
-    """What one sensor goes through, in the letters of the table of causes."""
+    """Quantities at one sensor, in the letters of the table of causes."""
 
     def __init__(self, world: World, i: int):
         session, n = world.session, world.vectors()[:, i]

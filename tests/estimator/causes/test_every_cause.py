@@ -78,7 +78,7 @@ WORLD = mixed()
 
 
 def setting_of(world: World) -> Setting:
-    """What causes look at, at the true parameters."""
+    """The setting of causes, at the true parameters."""
     nothing = np.zeros(world.session.readings.shape)
     geometry = stand_geometry(world.session)
     return stand_baseline(world.session, world.truth, geometry, nothing, nothing + 1).setting
@@ -211,6 +211,6 @@ def test_a_correction_made_twice_is_none(known: RecordCorrection) -> None:
 
 
 def same(a: CalibrationSession, b: CalibrationSession) -> bool:
-    """Whether two records say the same."""
+    """Whether two records hold the same values."""
     columns = ("readings", "standard_errors", "flipped", "beta")
     return all(np.array_equal(getattr(a, name), getattr(b, name)) for name in columns)

@@ -1,4 +1,4 @@
-"""What lags behind the temperature: the exact answers to a ramp and a step, its limits, and which cause is named."""
+"""Lag behind the temperature: the exact answers to a ramp and a step, its limits, and the cause that is named."""
 
 import numpy as np
 import pytest

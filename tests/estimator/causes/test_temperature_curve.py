@@ -1,4 +1,4 @@
-"""Over temperature a parabola is named as one and a line as a line, of bias and scale factor: neither is a rival."""
+"""A parabola over temperature is named as one and a line as a line, of bias and scale factor: neither is a rival."""
 
 from dataclasses import replace
 

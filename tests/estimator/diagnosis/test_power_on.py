@@ -1,4 +1,4 @@
-"""What settles after switching on is counted from there, where the session says when it was."""
+"""Settling after switching on is counted from there, where the session says when it was."""
 
 from dataclasses import replace
 from functools import cache
@@ -28,7 +28,7 @@ def warming(seed: int = 1) -> CalibrationSession:
 
 @cache
 def diagnosed(switched_on: float | None) -> Diagnosis:
-    """What is found when the unit was switched on then by the session's clock."""
+    """Diagnosis when the unit was switched on at this time of the session's clock."""
     return diagnose(replace(warming(), switched_on=switched_on))
 
 

@@ -1,4 +1,4 @@
-"""What a diagnosis says of an alignment: hidden lever arms, what only looks like them, and sound sessions."""
+"""Diagnosis of an alignment: hidden lever arms, effects that resemble them, and sound sessions."""
 
 from dataclasses import replace
 
@@ -115,7 +115,7 @@ def test_noise_that_turns_bring_is_no_lever_arm() -> None:
 
 
 def test_a_vibration_that_looks_like_one_is_said() -> None:
-    """What rises with the square of the rate and shows no starting and stopping."""
+    """The reading rises with the square of the rate and shows no starting and stopping."""
     [finding] = diagnose(turned(Run(shaking=4e-4))).findings
     assert "vibration-rectification" in finding.alternatives
     assert any("rule" in separation.measurement for separation in finding.separations)

@@ -31,7 +31,9 @@ def test_white_noise_of_unequal_sensors_is_no_structure(factor: float) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("factor", [3.5, 5.0])
 def test_one_sensor_noisier_than_stated_is_called_noisy(factor: float) -> None:
-    """By 24 orientations: its readings pull the directions that all share, so that others scatter too."""
+    """With 24 orientations the noisy sensor's readings pull the directions that all share, so that others scatter
+    too.
+    """
     for seed in range(4):
         rng, true, noise = np.random.default_rng([10, seed]), truth(6, seed=seed), np.full(6, NOISE)
         noise[seed] *= factor

@@ -31,7 +31,7 @@ def sessions(effect: Effect | None, count: int = 8) -> tuple[CalibrationSession,
 
 @cache
 def selected(effect: Effect | None) -> GroupSelection:
-    """What the catalogue alone makes of them."""
+    """Selection from the catalogue alone."""
     return select(GroupLayout.of([statistics_of(s) for s in sessions(effect)], UNIT))
 
 

@@ -141,5 +141,5 @@ def test_what_is_not_known_is_added_along_the_calibration_s_own_tangents() -> No
 
 
 def in_space(frame: np.ndarray, covariance: np.ndarray) -> np.ndarray:
-    """(3, 3) of turns along tangents, rad²."""
+    """(3, 3) covariance in space of turns along tangents, rad²."""
     return np.asarray(frame @ covariance @ frame.T)

@@ -1,4 +1,4 @@
-"""What is kept of a session: scores and information of its candidates, small, the record put right first."""
+"""Statistics kept of a session: scores and information of its candidates, small, the record corrected first."""
 
 import json
 from dataclasses import replace

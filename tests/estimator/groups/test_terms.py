@@ -1,4 +1,4 @@
-"""What sessions share and no cause explains is learned as an equation, and nothing is learned of noise."""
+"""Structure that sessions share and no cause explains is learned as an equation, and nothing is learned of noise."""
 
 import numpy as np
 import pytest

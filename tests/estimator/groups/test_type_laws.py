@@ -1,4 +1,4 @@
-"""What the temperature laws of a type's units are alike in, and what it is worth to a unit with few sessions."""
+"""Temperature laws that a type's units have in common, and their worth to a unit with few sessions."""
 
 from functools import cache
 
@@ -62,7 +62,7 @@ def test_few_units_tell_nothing_of_their_type() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("sessions", [5, 8])
 def test_a_unit_of_the_type_is_decided_with_few_sessions(sessions: int) -> None:
-    """As rarely wrong as U says, and more often than by its own sessions."""
+    """U is as honest as it states, and more sessions are decided than by their own laws."""
     covered, decided = [], {False: 0, True: 0}
     for seed in range(40):
         *lived, last = unit(sessions, np.random.default_rng((2, seed)), now=33.0)

@@ -1,4 +1,4 @@
-"""What only all sessions of a unit show is named in the latest of them, unless that one lacks it."""
+"""An effect that only all sessions of a unit show is named in the latest of them, unless that one lacks it."""
 
 from dataclasses import replace
 from functools import cache

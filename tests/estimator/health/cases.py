@@ -11,7 +11,7 @@ from estimator.results import Calibration, Estimate, Fit, Residuals, SensorCalib
 from estimator.session import ACCELEROMETER, Array
 
 TANGENTS = np.array([[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]])
-"""Of the axis Z."""
+"""Tangents of the axis Z."""
 TOLERANCES = {
     (ACCELEROMETER, "scale"): 1e-4,
     (ACCELEROMETER, "bias"): 5e-4,

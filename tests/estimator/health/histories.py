@@ -28,6 +28,6 @@ def measured(rng: np.random.Generator, time: Array, truth: Array, sigma: float =
 
 
 def readings(track: Track) -> Readings:
-    """With nothing in the base but the level."""
+    """The readings of a track, with nothing in the base but the level."""
     n = len(track.time)
     return Readings(track.time, track.change, track.sigma, np.ones((n, 1)), np.ones(1))

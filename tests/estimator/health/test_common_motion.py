@@ -18,7 +18,7 @@ TURN = np.array([3.0, 12.0, -4.0]) * ARCSEC
 SIGMA = 0.8 * ARCSEC
 SCALE_SIGMA = 2e-6
 STAND_SCALE = 6e-6
-"""Of one session, relative: each sensor's own, and the stand's."""
+"""One sigma of the stand's scale in one session, relative."""
 CONE = float(np.arccos(1 / np.sqrt(3)))
 
 
@@ -48,7 +48,7 @@ def measured(m: int, rng: np.random.Generator | None, moved: Array | None = None
 
 
 def split(m: int, rng: np.random.Generator | None, moved: Array | None = None, turn: Array = TURN) -> dict[str, Split]:
-    """By quantity, since a reference measured with the same errors."""
+    """The splits by quantity, since a reference measured with the same errors."""
     reference = block(axes_of(m), np.zeros((m, 5)) if rng is None else _errors(m, rng), covariance_of(m), np.zeros(3))
     return {s.motion.quantity: s for s in common_motion(measured(m, rng, moved, turn), reference)}
 
@@ -100,13 +100,13 @@ def scaled(*sigmas: float) -> tuple[Calibration, Calibration]:
 
 
 def test_a_sensor_that_explains_the_change_nearly_as_well_is_left_out_too() -> None:
-    """Without A1 χ² is 13.2, without A2 in its place 21.9: less than 2·ln 100 more."""
+    """χ² is 13.2 without A1 and 21.9 without A2 in its place: less than 2·ln 100 more."""
     found = common_motion(*scaled(5.4, 4.2, 0, 0, 0))[1].motion
     assert found.left_out == ("A1", "A2")
 
 
 def test_a_sensor_that_explains_the_change_far_worse_is_kept() -> None:
-    """Without A1 χ² is 12, without A2 in its place 31."""
+    """χ² is 12 without A1 and 31 without A2 in its place."""
     assert common_motion(*scaled(6.4, 4.0, 0, 0, 0))[1].motion.left_out == ("A1",)
 
 
@@ -237,7 +237,7 @@ def test_a_large_turn_has_an_honest_covariance_and_moves_no_sensor() -> None:
 
 @pytest.mark.parametrize("arcsec", [20.0, 7200.0])
 def test_a_sensor_that_tilts_beside_a_large_turn_is_found_and_does_not_drag_it(arcsec: float) -> None:
-    """Of seven; 1.4 arcsec is four sigmas of one axis in both sessions, beyond its own share of noise."""
+    """One of seven; 1.4 arcsec is four sigmas of one axis in both sessions, beyond its own share of noise."""
     for k in range(20):
         turn = turned_by(5.0, k)
         found = split(7, np.random.default_rng([22, k]), tilted(7, 1, arcsec), turn)["axes"]
@@ -278,7 +278,7 @@ def test_the_shares_of_both_sessions_add_up_to_the_uncertainty() -> None:
 
 
 def test_a_frame_held_by_the_axes_themselves_shows_no_turn() -> None:
-    """Such a frame lets the calibration's covariance vanish along a common turn."""
+    """The calibration's covariance vanishes along a common turn in such a frame."""
     axes, still = axes_of(6), np.zeros((6, 5))
     free = covariance_of(6, common=0.0)
     rows = [5 * i + k for i in range(6) for k in (3, 4)]

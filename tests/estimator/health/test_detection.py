@@ -1,4 +1,4 @@
-"""What has changed: p-values that are uniform where nothing happens, kinds, dates and sizes where something does."""
+"""Detection of changes: uniform p-values where nothing happens, kinds, dates and sizes where something does."""
 
 import numpy as np
 import pytest

@@ -30,8 +30,9 @@ def test_a_disc_without_area_holds_nothing() -> None:
 @pytest.mark.parametrize("sigma", [(1.0, 1.0), (0.3, 1.0)])
 @pytest.mark.parametrize("length", [2.0, 4.0, 8.0])
 def test_limits_hold_the_true_length_as_often_as_they_claim(sigma: tuple[float, float], length: float) -> None:
-    """On each side wrong in at most Φ(−2) = 2.3 %, in the least favourable direction and in the other; equal
-    sigmas have one direction."""
+    """Each limit is wrong in at most Φ(−2) = 2.3 %, in the least favourable direction and in the other; equal sigmas
+    have one direction.
+    """
     rng = np.random.default_rng(6)
     for center in ((0.0, length), (length, 0.0))[: len(set(sigma))]:
         draws = np.array(center) + np.array(sigma) * rng.standard_normal((500, 2))

@@ -27,7 +27,7 @@ def joint(of: Readings, q: float, column: Array, size: float) -> Array:
 
 
 def place_of(kind: Kind, size: float) -> int:
-    """Among the sizes of a kind."""
+    """Place of a size among the sizes of its kind."""
     return [own for of, own in PARTS if of is kind].index(size)
 
 

@@ -1,4 +1,4 @@
-"""How histories go on: first passages, discs, new events, bounds that hold."""
+"""Forecasts of histories: first passages, discs, new events, bounds that hold."""
 
 from dataclasses import replace
 
@@ -176,7 +176,9 @@ def seasonal(rng: np.random.Generator, t: Array) -> Track:
 
 
 def test_in_a_type_that_follows_the_seasons_few_sessions_are_not_taken_for_a_drift() -> None:
-    """Between its two sessions one has moved by 0.4 T, as much as eight degrees make; or at one temperature."""
+    """One track has moved by 0.4 T between its two sessions, as much as eight degrees make; or did so at one
+    temperature.
+    """
     rng = np.random.default_rng(22)
     tracks = [seasonal(rng, dates(rng, 8)) for _ in range(16)]
     tracks += [measured(rng, t, 0.5 * t, sigma=0.02) for t in (dates(rng, 8, 2.0) for _ in range(8))]

@@ -1,4 +1,4 @@
-"""What a recording in service says of each parameter: four states for candidates, detectable or not for the others."""
+"""Verdicts on each parameter from a recording in service: four states for candidates, detectable or not for others."""
 
 from dataclasses import replace
 from functools import cache
@@ -48,7 +48,7 @@ def test_a_sensor_that_moved_beyond_its_tolerance_fails_alone() -> None:
 
 
 def test_the_others_pass_only_where_the_tolerance_would_have_been_detected() -> None:
-    """Their own changes would be within it by the four states."""
+    """The others' own changes would be within it by the four states."""
     size = judged(6, MOVED, 1.0)["A1"].critical
     assert size is not None
     assert set(verdicts(6, MOVED, 0.6 * size).values()) == {"fail", "undecidable"}

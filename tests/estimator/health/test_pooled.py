@@ -1,4 +1,4 @@
-"""What a type teaches: learned from its histories, nearly the general case from few."""
+"""The prior of a type: learned from its histories, nearly the general one from few."""
 
 import numpy as np
 import pytest

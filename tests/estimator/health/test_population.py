@@ -1,4 +1,4 @@
-"""Who stands out of a population."""
+"""Outliers of a population."""
 
 from collections.abc import Sequence
 
@@ -11,7 +11,7 @@ from estimator.session import Array
 
 
 def standings(rates: Sequence[tuple[float, float]]) -> Array:
-    """Of rates with their sigmas, among themselves."""
+    """Standings of rates with their sigmas, among themselves."""
     values, sigmas = np.array(rates, dtype=float).T
     return standing(values, sigmas, *spread(values, sigmas))
 

@@ -1,4 +1,4 @@
-"""What a session is worth by its error, given all that the history may be."""
+"""Weight of a session by its error, given all that the history may be."""
 
 import numpy as np
 import pytest

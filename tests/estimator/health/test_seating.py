@@ -1,4 +1,4 @@
-"""How blocks are seated on each stand, and what may have happened to it, on fleets of whole rotations."""
+"""The seating of blocks on each stand, and what may have happened to the stand, on fleets of whole rotations."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,6 @@
-"""When a stand was turned, and turned back, among all dates of a stand with more sessions than are spread."""
+"""The dates at which a stand was turned, and turned back, among all dates of a stand with more sessions than are
+spread.
+"""
 
 import numpy as np
 import pytest

@@ -30,7 +30,7 @@ def fleet(rng: np.random.Generator, added: Seating, units: int = 8) -> list[Stan
 
 
 def flagged(found: tuple[StandState, ...]) -> dict[str, StandShift]:
-    """Of every stand that is named its most evident shift."""
+    """The most evident shift of every stand that is named."""
     return {one.stand: one.worst for one in found if one.shifts and one.worst is not None}
 
 
@@ -75,7 +75,9 @@ def test_blocks_that_each_sit_otherwise_in_a_fixture_do_not_shift_the_stand() ->
 @pytest.mark.parametrize("units", [3, 8])
 @pytest.mark.parametrize("seating", [fitted, reseated])
 def test_however_blocks_are_seated_a_stand_that_stays_is_left_alone(seating: Seating, units: int) -> None:
-    """With the scatter of the typical date taken for that of every date, 8 to 67 in a hundred fleets were flagged."""
+    """If the scatter of the typical date were taken for that of every date, 8 to 67 in a hundred fleets would be
+    flagged.
+    """
     alarms = sum(bool(flagged(stand_states(fleet(np.random.default_rng(300 + s), seating, units)))) for s in range(10))
     assert alarms <= stats.binom.isf(1e-3, 10, 0.01)
 

@@ -1,4 +1,4 @@
-"""What temperature is worth in a session, by the law of the sessions before it."""
+"""Effect of temperature in a session, by the law of the sessions before it."""
 
 from collections.abc import Sequence
 
@@ -18,7 +18,7 @@ PER_DEGREE = 0.15
 
 
 def session(bias: float, scale: float = 0.0, rng: np.random.Generator | None = None) -> Seen:
-    """With a bias and a change of the scale factor, T; measured with noise where there is any."""
+    """A session with a bias and a change of the scale factor, T; measured with noise where there is any."""
     noise = np.zeros(2) if rng is None else rng.standard_normal(2)
     of_bias = bias * BIAS + noise[0] * U_BIAS
     of_scale = -0.12 * (1 + scale * SCALE + noise[1] * U_SCALE)
@@ -83,7 +83,7 @@ def test_a_sensor_that_follows_nothing_is_left_as_it_is() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("scatter", [0.0, 0.15], ids=["noise", "hysteresis"])
 def test_u_covers_what_the_law_leaves(scatter: float) -> None:
-    """Of 200 sensors, with a bend too small to be seen in most."""
+    """U is tried in 200 sensors, with a bend too small to be seen in most."""
     covered = []
     for seed in range(200):
         rng = np.random.default_rng((5, seed))

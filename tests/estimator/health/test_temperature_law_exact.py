@@ -76,7 +76,9 @@ def test_no_law_is_looked_for_without_a_tolerance() -> None:
 
 @pytest.mark.parametrize("scatter", [0.0, 0.3])
 def test_the_uncertainty_of_a_worth_is_what_it_scatters_by(scatter: float) -> None:
-    """Over draws of noise and of what scatters about the law, of which the session and its reference have their own."""
+    """The noise is drawn anew, and so is the scatter about the law, of which the session and its reference each have
+    their own.
+    """
     errors, sigmas, dofs = [], [], []
     for seed in range(25):
         rng = np.random.default_rng(seed)
@@ -93,7 +95,7 @@ def test_the_uncertainty_of_a_worth_is_what_it_scatters_by(scatter: float) -> No
 
 
 def test_a_session_and_its_reference_each_lie_off_the_law_by_what_scatters() -> None:
-    """Of a law that many sessions tell well, √2·τ is left, and of it alone."""
+    """√2·τ alone is left of a law that many sessions determine well."""
     found = []
     for seed in range(4):
         rng = np.random.default_rng(seed)
@@ -226,7 +228,7 @@ def test_a_type_s_law_is_in_its_own_tolerance() -> None:
 
 
 def test_sound_sensors_show_a_law_as_rarely_as_is_said() -> None:
-    """Within five in a hundred over both parameters of a sensor."""
+    """Both parameters of a sensor together show one in at most five of a hundred."""
     found = 0
     for seed in range(25):
         rng = np.random.default_rng(seed)

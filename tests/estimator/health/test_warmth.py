@@ -15,7 +15,7 @@ SLOPE, BEND = 0.02, 0.008
 
 
 def law(value: Array, warm: Array = WARM, rival: Array | None = None) -> Warmth:
-    """Of values (n,), T, measured every half year."""
+    """The law of values (n,), T, measured every half year."""
     n = len(value)
     one = Readings(np.arange(n) / 2.0, value[:, None], np.full((n, 1), SIGMA), np.ones((n, 1)), np.ones(1))
     found = warmth_of(one, warm, rival, LEVEL)

@@ -49,8 +49,9 @@ def _direction(rng: np.random.Generator) -> Array:
 @pytest.mark.slow
 @pytest.mark.parametrize(("m", "arcsec"), [(4, 0.8), (6, 2.0), (8, 1.2)])
 def test_u_holds_an_axis_that_drifted_by_a_part_of_its_tolerance(m: int, arcsec: float) -> None:
-    """With a sensor judged beside an x that it drags itself, 74 to 90 in a hundred were held. With one that moves for
-    nothing while the others pay for it, 92 of the others of four axes were."""
+    """If a sensor were judged beside an x that it drags itself, 74 to 90 in a hundred would be held. If one moved for
+    nothing while the others pay for it, 92 of the others of four axes would be.
+    """
     rng = np.random.default_rng([m, round(10 * arcsec)])
     found = [drifted(rng, m, arcsec * ARCSEC) for _ in range(SESSIONS)]
     assert sum(own for own, _ in found) >= stats.binom.ppf(1e-3, SESSIONS, 0.954)

@@ -24,14 +24,14 @@ def flight(m: int = 6) -> CalibrationSession:
 
 
 def failed(change: Array | float, m: int = 6, sensor: int = 2, first: int = ONSET) -> ParityResult:
-    """What is said of a flight in which the last readings of a sensor are changed."""
+    """Result on a flight in which the last readings of a sensor are changed."""
     readings = flight(m).readings.copy()
     readings[first:, sensor] = change
     return parity_check(replace(flight(m), readings=readings), block(m)[1])
 
 
 def later(m: int = 6, sensor: int = 2) -> Array:
-    """Its readings from the onset on."""
+    """Readings of the sensor from the onset on."""
     return flight(m).readings[ONSET:, sensor]
 
 

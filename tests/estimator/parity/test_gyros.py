@@ -56,7 +56,7 @@ def recording(moved: float = 0.0, *, seed: int = 0, pulses: bool = True, seconds
 
 
 def checked(document: Document) -> ParityResult:
-    """Against the block's calibration; a rate gyro's has no count time either."""
+    """Checks a recording against the block's calibration; a rate gyro's has no count time either."""
     pulses = "count_time_s" in document
     reference = calibrate(
         read_session(gyro_block(sensors=gyros(), count_time_s=100.0 if pulses else None, se=0.3 if pulses else 3e-3))

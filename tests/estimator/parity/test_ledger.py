@@ -61,7 +61,7 @@ def test_an_empty_ledger_has_no_blocks() -> None:
 
 
 def rails(readings: Array, sign: float = 1.0) -> float:
-    """Where one channel is cut off, its samples given in three pieces."""
+    """Value at which one channel is cut off, its samples given in three pieces."""
     ends = Rails(sign, 1)
     for part in np.array_split(readings[:, None], 3):
         ends.add(part)
@@ -117,7 +117,7 @@ def test_a_gap_ends_a_group() -> None:
 
 
 def selection() -> BlockSelection:
-    """Of forty blocks of which the tenth moves."""
+    """Selection from forty blocks of which the tenth moves."""
     rng = np.random.default_rng(6)
     readings = 1e-3 * rng.standard_normal((400, 6))
     readings[100:110] += rng.standard_normal((10, 6))

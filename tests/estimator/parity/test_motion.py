@@ -1,4 +1,4 @@
-"""What motion does to sound sensors, and what is said because of it. The flights share no code with the estimator."""
+"""Effects of motion on sound sensors, and the results they lead to. The flights share no code with the estimator."""
 
 from dataclasses import replace
 from functools import cache
@@ -40,7 +40,7 @@ def test_lever_arms_and_delays_name_no_sensor(stated: bool, gyros: bool) -> None
 
 
 def test_some_of_these_flights_would_be_called_changed_if_motion_did_nothing() -> None:
-    """And then it is said that they move too much, with who would have been suspected."""
+    """The result then says that they move too much, with the sensors that would have been suspected."""
     found = [flown(seed, stated=False, gyros=False) for seed in range(4)]
     moving = [r for r in found if r.moving]
     assert moving
@@ -69,7 +69,7 @@ def test_stated_places_show_smaller_changes() -> None:
 
 
 def test_rest_keeps_its_power() -> None:
-    """Nothing moves there, so nothing is lost: less than a hundredth of the variance, half of that in sigma."""
+    """Rest holds no motion, so nothing is lost: less than a hundredth of the variance, half of that in sigma."""
     found = flown(3, rest=True, seconds=200.0)
     assert found.left_out["moving"] > 50
     assert found.motion_share < 0.01
@@ -92,7 +92,7 @@ def stream(**changes: Any) -> tuple[ParityAccumulator, Any]:
 
 
 def test_the_delays_are_found() -> None:
-    """In samples; what is common to all of them, along each axis of the block, is motion."""
+    """Delays are in samples; those common to all sensors, along each axis of the block, are motion."""
     taken, block = stream(arm=0.0)
     chosen = select(taken.ledger, "any", G, RATE)
     unknown = nuisance_of(chosen.blocks, chosen.rest, taken.reference, G, RATE, arms=False)

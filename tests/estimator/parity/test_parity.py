@@ -1,4 +1,4 @@
-"""What a recording shows: false alarms, detection, isolation, honest covariance, and what cannot be seen."""
+"""Results from a recording: false alarms, detection, isolation, honest covariance, and changes that cannot be seen."""
 
 import json
 import tracemalloc
@@ -28,7 +28,7 @@ def results(m, *, change=lambda true: true, runs=RUNS, motion="auto", **options)
 
 @cache
 def unchanged():
-    """Of six sensors that nothing happened to, said to move in any way."""
+    """Results for six sensors that nothing happened to, said to move in any way."""
     return results(6, motion="any", runs=24)
 
 
@@ -51,7 +51,7 @@ def test_rest_raises_no_alarms():
 
 @pytest.mark.slow
 def test_stated_sigmas_are_honest():
-    """Where the sensors are said to sit in one point, as they do; a stated place leaves half a millimetre."""
+    """The sensors are said to sit in one point, as they do; a stated place leaves half a millimetre."""
     found = unchanged()
     z = np.array([s.bias.size / s.bias.sigma for r in found for s in r.sensors])
     assert 0.8 < np.sqrt(np.mean(z**2)) < 1.2

@@ -1,4 +1,4 @@
-"""What a recording is compared with: inputs, the vector, and which sensors take part."""
+"""The reference of a recording: inputs, the vector, and the sensors that take part."""
 
 from dataclasses import replace
 

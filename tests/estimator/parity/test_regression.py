@@ -27,7 +27,7 @@ def selection(groups: int = GROUPS) -> BlockSelection:
 
 
 def directions(swing: Array) -> Array:
-    """What is excited by (1, n/g) that swings by (320, 3) about z."""
+    """Directions that (1, n/g) excites, swinging by (320, 3) about z."""
     x = np.column_stack([np.ones(len(swing)), swing + np.array([0.0, 0.0, 1.0])])
     return excited(x, np.ones(len(x)), selection(), GROUPS)
 
@@ -42,7 +42,7 @@ def test_a_direction_counts_from_a_fiftieth_of_g_on() -> None:
 
 
 def test_a_direction_that_changes_in_one_group_only_does_not_count() -> None:
-    """Its residuals would say nothing of the noise."""
+    """The residuals of such a direction would not show the noise."""
     swing = np.zeros((320, 3))
     swing[:10, 0] = np.tile([1.0, -1.0], 5)
     assert directions(swing).shape == (4, 1)
@@ -77,7 +77,7 @@ def test_each_sensor_has_the_noise_of_its_own() -> None:
 
 
 def test_few_groups_draw_each_sensor_towards_the_mean() -> None:
-    """By as much as six groups weigh beside those that it shows."""
+    """The mean weighs as much as six groups beside the sensor's own."""
     groups, sigma = 20, np.array([1.0, 1.0, 4.0, 1.0, 2.0, 1.0, 1.0, 1.0])
     many = [noise_of(sigma, groups, seed) for seed in range(400)]
     V = many[0][1]
@@ -89,7 +89,7 @@ def test_few_groups_draw_each_sensor_towards_the_mean() -> None:
 
 
 def test_no_sensor_s_own_variance_is_below_nothing() -> None:
-    """What is drawn from the mean is the least that each has."""
+    """The share of the mean is the least that each has."""
     sigma = np.array([1e-3, 1.0, 1.0, 1.0, 1.0, 1.0])
     for seed in range(20):
         parts, V = parts_of(sigma, 8, seed)
@@ -139,7 +139,7 @@ def test_chi_square_by_a_covariance_from_few_groups_has_the_moments_that_are_sta
 
 
 def evidence(manoeuvres: tuple[Manoeuvre, ...], dof: float) -> ParityEvidence:
-    """Of a flight of six sensors, with noise that is all its own and known from ``dof`` numbers."""
+    """Evidence of a flight of six sensors, with noise that is all its own and known from ``dof`` numbers."""
     true, calibration = block(6)
     flight = recording(true, manoeuvres=manoeuvres, seconds=120.0)
     stream = ParityAccumulator("T-1", flight.sensors, calibration, sample_rate=20.0, site=flight.site)

@@ -24,7 +24,7 @@ def given(size: float) -> tuple[CalibrationSession, Calibration]:
 
 
 def stream(size: float) -> ParityAccumulator:
-    """That has taken the flight in."""
+    """An accumulator that has taken the flight in."""
     flight, reference = given(size)
     made = ParityAccumulator("T-1", flight.sensors, reference, sample_rate=20.0, site=flight.site)
     made.add(flight.readings)
@@ -32,7 +32,7 @@ def stream(size: float) -> ParityAccumulator:
 
 
 def evidence(size: float) -> ParityEvidence:
-    """Of the flight."""
+    """Evidence of the flight."""
     taken = stream(size)
     return ParityEvidence(regress(select(taken.ledger, "auto"), taken.reference, 9.81))
 

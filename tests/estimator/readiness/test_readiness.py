@@ -30,7 +30,7 @@ def test_a_cold_unit_is_told_how_long_to_wait() -> None:
 
 @pytest.mark.slow
 def test_the_time_to_wait_is_given_with_nine_tenths_of_its_chance() -> None:
-    """Over many records the true time lies inside nine times in ten: within what half of it would hold, five."""
+    """The true time lies inside nine times in ten over many records: within what half of it would hold, five."""
     settling = 400 * (1 - np.exp(-clock(30) / 1200))
     still_to_wait = 1200 * np.log(400 * np.exp(-1800 / 1200) * (1 - np.exp(-5760 / 1200)) / 12.5)
     waits = [judged(record(np.outer(settling, [0, 1, 0, 0]), white=3.0, seed=seed)).wait for seed in range(24)]

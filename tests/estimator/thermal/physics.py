@@ -31,7 +31,7 @@ class Still:
     quadratic: float = 2e-5
     """c of A1, s²/m; every next sensor's has the other sign."""
     bend: tuple[float, float] = (4e-7, 4e-6)
-    """Of the second order, K and b: V per m/s² per K², m/s² per K²."""
+    """Second-order coefficients of K and b: V per m/s² per K², m/s² per K²."""
     loop: float = 0.0
     """m/s², of A1 to A3."""
     lag: float = 0.0
@@ -51,7 +51,7 @@ GYRO_SCALE = 50.0
 
 @dataclass(frozen=True, eq=False)
 class Truly:
-    """What is so: powers of T − 20, axes, applied directions, temperatures and times."""
+    """The truth: powers of T − 20, axes, applied directions, temperatures and times."""
 
     scale: Array
     bias: Array

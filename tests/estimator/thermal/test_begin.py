@@ -1,4 +1,4 @@
-"""How a session is taken up: dimensionless rows, settings, a start, the order that the orientations support."""
+"""The start of a thermal session: dimensionless rows, settings, a start, the order that the orientations support."""
 
 from dataclasses import replace
 
@@ -50,7 +50,7 @@ def test_the_start_is_the_fit_without_temperature() -> None:
 
 
 def turn_of(axes: np.ndarray, found: np.ndarray) -> np.ndarray:
-    """(3, 3) that takes true axes to those found, applied from the right."""
+    """(3, 3) turn that takes true axes to those found, applied from the right."""
     left, _, right = np.linalg.svd(axes.T @ found)
     return np.asarray(left @ right)
 

@@ -16,7 +16,7 @@ BOTH = pytest.mark.parametrize(("gyros", "stated"), [(0, False), (3, False), (0,
 
 
 def moved(state: State, element: int, by: float) -> State:
-    """By one of all unknowns: the sensors' first, then the settings'."""
+    """The state moved by one of all unknowns: the sensors' first, then the settings'."""
     m, p = state.vector.shape
     step = np.zeros(m * p + 5 * len(state.directions))
     step[element] = by

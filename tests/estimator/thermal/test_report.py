@@ -43,7 +43,7 @@ def deviations(result: Calibration, true: Truly) -> Array:
 
 
 def test_errors_of_all_elements_are_those_of_the_covariance() -> None:
-    """Their normalised squares are χ² of thirty, and of one; noise is known, directions hold the frame."""
+    """Normalised squares of the errors are χ² of thirty, and of one; noise is known, directions hold the frame."""
     whole, single = [], []
     for seed in range(COUNT):
         result, true = calibrated(known, seed)
@@ -78,7 +78,7 @@ def test_gyros_at_rest_tell_their_bias_alone() -> None:
 
 
 def test_curves_lie_within_their_bands_of_the_truth() -> None:
-    """At twelve temperatures, every kind of curve."""
+    """Every kind of curve is tried at twelve temperatures."""
     grid, held = np.linspace(-40, 70, 12), []
     for seed in range(COUNT):
         result, true = calibrated(known, seed)
@@ -97,7 +97,7 @@ def test_curves_lie_within_their_bands_of_the_truth() -> None:
 
 
 def test_a_line_of_temperature_gives_the_coefficient_that_was_put_in() -> None:
-    """With its sign, in m/s² a kelvin and V per m/s² a kelvin; the order is mostly one."""
+    """The coefficient has its sign, in m/s² a kelvin and V per m/s² a kelvin; the order is mostly one."""
     result, true = calibrated(lines)
     assert result.thermal is not None
     orders = []

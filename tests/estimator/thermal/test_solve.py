@@ -122,7 +122,7 @@ def test_few_orientations_determine_little() -> None:
 
 
 def test_without_a_direction_or_anything_else_the_frame_alone_is_unseen() -> None:
-    """Of each sensor two readings at one setting determine a line of temperature at most."""
+    """Two readings of each sensor at one setting determine a line of temperature at most."""
     rows, state = rows_and_state(settings=40)
     same = replace(rows, scale_basis=np.ones_like(rows.scale_basis))
     assert not is_determined(same, state, free_of(same, 0))

@@ -1,4 +1,4 @@
-"""What the readings show beside polynomials: amplitudes as of a joint fit, misfits, loops and lags that were put in."""
+"""Structure beside polynomials: amplitudes as in a joint fit, and misfits, loops and lags that were put in."""
 
 from dataclasses import replace
 
@@ -57,7 +57,7 @@ def test_a_column_that_the_fit_has_already_has_no_amplitude() -> None:
 
 
 def test_columns_that_have_nothing_in_common_keep_their_amplitudes() -> None:
-    """Of accelerometers and gyros each by its own."""
+    """Accelerometers and gyros each keep their own."""
     F, none = np.diag([4.0, 9.0, 16.0]), np.zeros(0)
     linear = ThermalEquations(none, none, none, none, none, none, np.array([0.0, 9.0, 32.0]), F)
     size, covariance, _ = amplitudes(linear, np.array([1, 2]), np.arange(1), np.array([[0.25]]))
@@ -159,7 +159,7 @@ def test_a_lag_beside_a_loop_is_found_too() -> None:
 
 
 def test_the_chance_of_a_form_is_that_of_fisher_s_law_over_all_forms_tried() -> None:
-    """With as many degrees of freedom as readings leave: few here."""
+    """The degrees of freedom are those that the readings leave: few here."""
     one, course = solved(Still(soaks=(20.0, -40.0, 20.0, 70.0, 20.0), each=6, loop=5e-4))
     one = replace(one, chi2=2.0 * one.dof)
     forms = list(tried_forms(one, course, 1, {HYSTERESIS, LAG}, stated=False))
@@ -176,8 +176,9 @@ def test_where_the_temperature_only_rises_there_is_no_loop_to_find() -> None:
 
 
 def test_by_chance_a_form_shows_as_often_as_is_said() -> None:
-    """Of 16 sound sessions the chance of a loop is even, below a half in about half of them; that of the best lag is
-    larger than it is said at most."""
+    """The p-value of a loop is uniform over 16 sound sessions, below a half in about half of them; that of the best lag
+    is an upper bound.
+    """
     chances, singles, lags = [], [], []
     for seed in range(16):
         one, course = solved(Still(each=6, known=2e-3), seed)
@@ -203,7 +204,7 @@ def test_by_chance_curves_are_missed_as_often_as_is_said() -> None:
 
 @pytest.mark.parametrize("parameter", ["bias", "scale"])
 def test_a_wave_that_no_polynomial_follows_is_a_misfit_of_its_size(parameter: str) -> None:
-    """Of 3 mm/s², or of 300 ppm of the scale factor, every 30 °C: τ is its root mean square or so."""
+    """A wave of 3 mm/s², or of 300 ppm of the scale factor, every 30 °C: τ is about its root mean square."""
     document, true = lived(Still(soaks=SLOW, each=4, known=2e-3), np.random.default_rng(3))
     wave = np.sin(2 * np.pi * (true.temperature - 20) / 30)
     by = 3e-3 if parameter == "bias" else 3e-4 * G * true.up @ true.axes[1]

@@ -12,7 +12,7 @@ What = Literal["upload", "service", "withdraw", "supersede"]
 LATE = (60, 300)
 """Days after which a late entry is made."""
 SLIPS = {"": 0.8, "late": 0.06, "twice": 0.04, "wrong date": 0.04, "wrong serial": 0.03, "corrected": 0.03}
-"""What goes wrong with an upload, and how often."""
+"""Slips with an upload, and how often each happens."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,25 +20,26 @@ class Entry:
     """One thing that a crew does with the service."""
 
     day: float
-    """On which it is entered, since the first session of the life."""
+    """Day of the entry, since the first session of the life."""
     what: What
     slip: str
-    """What is wrong with it, or what it puts right; empty where nothing is."""
+    """Slip in it, or the one that it puts right; empty where there is none."""
     key: int
-    """Of an upload its number; of a withdrawal that of the upload, or of the service, that is taken back; of a
-    correction that of the upload that is replaced."""
+    """Number of an upload; for a withdrawal that of the upload, or of the service, that is taken back; for a correction
+    that of the upload that is replaced.
+    """
     document: dict[str, Any]
-    """Of an upload or a correction the session file, of a service or a withdrawal the body that is posted."""
+    """Session file of an upload or a correction; body that is posted of a service or a withdrawal."""
     takes_back: Literal["", "session", "service"] = ""
 
     @property
     def at(self) -> str:
-        """When it is entered."""
+        """Moment of the entry."""
         return (BEGIN + timedelta(days=self.day)).isoformat()
 
 
 def entries(life: Life, rng: Random) -> tuple[Entry, ...]:
-    """Everything in the order in which it is entered; in the end all that was wrong is put right."""
+    """All entries of a life in the order in which they are made; in the end every mistake is put right."""
     block, made = draw_block(life, rng), list[Entry]()
     for key, one in enumerate(life.sessions):
         slip = str(rng.choice(list(SLIPS), p=list(SLIPS.values())))

@@ -22,7 +22,7 @@ class Epoch:
     value: Array
     """(n,) deviation from the reference as recorded: the error of the reference is in all of them but the first."""
     sigma: Array
-    """(n,) that each session states; of the reference its own."""
+    """(n,) sigma that each session states; of the reference its own."""
     temperature: Array
     """(n,) °C of the sessions."""
     truth: Array
@@ -31,7 +31,9 @@ class Epoch:
 
 
 def epochs(life: Life, parameters: int, rng: Random) -> tuple[tuple[Epoch, ...], ...]:
-    """Of every epoch that has two sessions or more, so many parameters of which the first is the one that moves."""
+    """The epochs that have two sessions or more, each of so many ``parameters``, the first of which is the moving
+    one.
+    """
     breaks = [0, *(one.day for one in life.services), DAYS[-1] + 1]
     found = []
     for start, end in pairwise(breaks):

@@ -1,5 +1,5 @@
-"""What goes wrong with a file before anybody reads it: slips of single readings, sensors that fail while they are
-recorded, a range that was set wrong, and what loggers do to raw files. Every fault makes a new document of a sound one.
+"""Faults of a file before anybody reads it: slips of single readings, sensors that fail while they are recorded, a
+range that was set wrong, and the damage that loggers do to raw files. Every fault makes a new document of a sound one.
 """
 
 import json
@@ -17,9 +17,9 @@ GROSS = 0.02
 FAILS = (0.3, 0.8)
 """Part of a recording after which a sensor fails."""
 COUNTS = 16_384
-"""In the largest reading of a raw file that is written in counts of sixteen bits."""
+"""Counts in the largest reading of a raw file that is written in counts of sixteen bits."""
 NO_DATA = (-9999.0, -32768.0, 9.9e37)
-"""As loggers and tables write it."""
+"""Markers of missing data, as loggers and tables write them."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Gross:
     document: Document
     sensor: str
     rows: tuple[int, ...]
-    """Of the readings that are wrong."""
+    """Rows of the wrong readings."""
 
 
 def copied(document: Document) -> Document:
@@ -39,7 +39,7 @@ def copied(document: Document) -> Document:
 
 
 def names_of(document: Document) -> list[str]:
-    """Of its sensors."""
+    """Names of its sensors."""
     return [sensor["name"] for sensor in document["sensors"]]
 
 
@@ -96,7 +96,7 @@ FAILURES: dict[str, Callable[[Array, Array, float, Random], Array]] = {
     "gain": lambda u, t, g, rng: 1.1 * u,
     "noise": lambda u, t, g, rng: u + 0.05 * g * rng.standard_normal(len(u)),
 }
-"""How a sensor fails: from its readings since then, the time since then in rows, and the reading of 1 g."""
+"""Failures of a sensor: functions of its readings since then, the time since then in rows, and the reading of 1 g."""
 
 
 def failing(document: Document, failure: str, rng: Random) -> tuple[Document, str]:
@@ -209,7 +209,7 @@ SICKNESSES: dict[str, Sickness] = {
     "no rate": _no_rate,
     "readings repeated": _repeated,
 }
-"""What loggers do to a raw file in counts."""
+"""Damage that loggers do to a raw file in counts."""
 
 
 def sick(document: Document, sickness: str, rng: Random) -> Document:

@@ -1,4 +1,4 @@
-"""What a parameter does over the years: courses in tolerances, one value a day.
+"""Courses of parameters over the years, in tolerances, one value a day.
 
 Sizes and times come from beta, gamma, Weibull and triangular laws, each bounded away from absurd values.
 """
@@ -56,7 +56,7 @@ def _step(rng: Random) -> Array:
 
 
 def _aging(rng: Random) -> Array:
-    """Since its assembly some months before the reference."""
+    """Aging since its assembly some months before the reference."""
     before, constant = rng.gamma(2.0, 0.15), 0.1 + rng.gamma(2.0, 0.6)
     age = before + DAYS / YEAR
     gone = -np.expm1(-age / constant) if rng.random() < 0.5 else np.log1p(age / constant) / np.log1p(10 / constant)

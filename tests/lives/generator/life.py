@@ -10,7 +10,7 @@ from tests.lives.generator.workshop import SET_POINT, Stand, draw_stands, sessio
 
 Sensors = Literal["accelerometers", "gyros", "both"]
 PARAMETERS = {"A": ("bias", "scale", "quadratic", "axis"), "G": ("bias", "scale", "axis")}
-"""That move, by the first letter of a sensor's name."""
+"""Parameters that move, by the first letter of a sensor's name."""
 SERVICED = {"adjustment": 0.0, "repair": 0.3, "service": 0.15}
 """Kinds of service, and one sigma of what a parameter jumps by, T; a transport is entered as a service."""
 RECORDED = ("in time", "late", "wrong date")
@@ -18,7 +18,7 @@ RECORDED = ("in time", "late", "wrong date")
 
 @dataclass(frozen=True)
 class UnitType:
-    """What units of a type share; tolerances in SI (relative for scale), by first letter and parameter."""
+    """A type of units; tolerances in SI (relative for scale), by first letter and parameter."""
 
     name: str
     sensors: Sensors
@@ -27,7 +27,7 @@ class UnitType:
 
 @dataclass(frozen=True, eq=False)
 class Move:
-    """What one parameter of one sensor does; everything else is stable."""
+    """Move of one parameter of one sensor; everything else is stable."""
 
     sensor: str
     parameter: str
@@ -80,7 +80,7 @@ class Life:
     stands: tuple[Stand, ...]
 
     def kind(self) -> str:
-        """Of the first moving parameter; stable if none moves."""
+        """Kind of the first moving parameter; stable if none moves."""
         return self.moves[0].kind if self.moves else STABLE
 
     def jumped(self, day: float) -> float:
@@ -90,17 +90,17 @@ class Life:
 
 @dataclass(frozen=True)
 class Plan:
-    """What lives are drawn."""
+    """Kinds and lengths of the lives that are drawn."""
 
     shares: tuple[tuple[str, float], ...] = tuple((kind, 1.0) for kind in KINDS)
-    """How often each kind of life comes, up to a factor."""
+    """Frequency of each kind of life, up to a factor."""
     years: tuple[float, float] = (2.5, 6.0)
     """Shortest and longest."""
     services: float = 0.15
     """A year."""
 
     def bad(self, share: float) -> "Plan":
-        """With a share of units that are not stable, all other kinds alike."""
+        """The plan with a share of units that are not stable, all other kinds alike."""
         others = [kind for kind in KINDS if kind != STABLE]
         return replace(self, shares=((STABLE, 1 - share), *((kind, share / len(others)) for kind in others)))
 
@@ -148,7 +148,7 @@ def _move(kind: str, names: tuple[str, ...], rng: Random) -> Move:
 
 
 def _services(last: float, rate: float, rng: Random) -> tuple[Serviced, ...]:
-    """At times of their own, whatever the unit does."""
+    """Services at times of their own, whatever the unit does."""
     days = np.sort(rng.uniform(30, max(last, 31), rng.poisson(rate * last / YEAR))).astype(int)
     kinds = [str(rng.choice(list(SERVICED))) for _ in days]
     recorded = [str(rng.choice(RECORDED, p=(0.6, 0.25, 0.15))) for _ in days]

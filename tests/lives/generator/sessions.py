@@ -32,7 +32,7 @@ class Block:
 
 
 def draw_block(life: Life, rng: Random) -> Block:
-    """With the sensors of its life; sensors' errors are those of good units."""
+    """A block with the sensors of its life; their errors are those of good units."""
     gyro = np.array([name[0] == "G" for name in life.names])
     m = len(gyro)
     nominal = np.concatenate([_cone(int(np.sum(gyro == kind))) for kind in (False, True)])
@@ -74,7 +74,7 @@ def session_of(life: Life, block: Block, of: Measured, rng: Random) -> dict[str,
 
 
 def started_at(day: float) -> str:
-    """With its offset, as a stand's clock writes it."""
+    """Start of a session with its offset, as a stand's clock writes it."""
     return (BEGIN + timedelta(days=float(day))).isoformat()
 
 

@@ -1,4 +1,4 @@
-"""When and where a unit is measured: dates with gaps, halls with winters, stands with shifts of their own."""
+"""Times and places of measurements of a unit: dates with gaps, halls with winters, stands with shifts of their own."""
 
 from dataclasses import dataclass
 

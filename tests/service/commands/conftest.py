@@ -24,7 +24,7 @@ READY = "imu-health is ready: open "
 
 @dataclass(frozen=True)
 class Ran:
-    """What a command left behind."""
+    """Exit code and output of a command."""
 
     code: int
     out: str

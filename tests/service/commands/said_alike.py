@@ -1,4 +1,4 @@
-"""What a service says of one unit's use, wherever it says it."""
+"""Statements of a service about one unit's use, wherever they stand."""
 
 from csv import DictReader
 from dataclasses import dataclass
@@ -20,12 +20,12 @@ SYSTEM = {"system": "px4"}
 
 @dataclass(frozen=True)
 class FleetSaid:
-    """What is said of all units at once."""
+    """Statements about all units at once."""
 
     page: str
     paper: str
     events: dict[str, Any]
-    """Of the calendar, by serial number."""
+    """Events of the calendar, by serial number."""
     lists: tuple[dict[str, tuple[bool, str]], ...]
     """`usable` and `use` of every unit, by serial number, as each list for programs has them."""
 
@@ -36,7 +36,7 @@ def plain(text: str) -> str:
 
 
 def fleet_of(client: httpx.Client) -> FleetSaid:
-    """Of a service."""
+    """The statements of a service."""
     calendar = Calendar.from_ical(client.get("/api/v1/feeds/due.ics").raise_for_status().content)
     return FleetSaid(
         plain(client.get("/", headers=HTML).raise_for_status().text),

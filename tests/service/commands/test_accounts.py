@@ -15,7 +15,7 @@ from tests.serving import serving
 
 @pytest.fixture
 def settings(sqlite: Databases, stock_of: StockOf):
-    """Of an empty service."""
+    """Settings of an empty service."""
     with stock_of(sqlite).holding() as found:
         yield found
 

@@ -29,7 +29,7 @@ def full(settings_holding: SettingsHolding) -> Settings:
 
 
 def write_note(client: httpx.Client) -> None:
-    """Something that was written by hand."""
+    """Writes a note by hand."""
     client.post("/api/v1/units/BA-017/notes", json={"text": "dropped", "by": "K. Ito"}).raise_for_status()
 
 

@@ -189,7 +189,7 @@ def test_what_people_did_before_a_filling_was_broken_off_is_done_once(served: Se
 
 
 def test_every_unit_is_said_alike_everywhere(served: Settings, run: Run) -> None:
-    """On its page, in the list, on its label, in the calendar, the report, an export, over HTTP and in the terminal."""
+    """Compares its page, the list, its label, the calendar, the report, an export, HTTP and the terminal."""
     with serving(served) as url, httpx.Client(base_url=url) as client:
         for member in CAST:
             client.get(f"/api/v1/units/{member.serial}/usable").raise_for_status()  # its dates are worked out

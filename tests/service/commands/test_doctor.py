@@ -22,7 +22,7 @@ NOW = datetime(2026, 11, 23, tzinfo=UTC)
 
 @pytest.fixture(autouse=True)
 def own_variables(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What the machine sets is another matter."""
+    """Sets variables, so that those of the machine do not matter."""
     monkeypatch.setenv("IMU_HEALTH_DIAGNOSIS_WORKERS", "1")
 
 

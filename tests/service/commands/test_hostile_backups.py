@@ -26,7 +26,7 @@ from tests.stock import stores
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 OUTSIDE = "../../precious"
-"""From the folder of files that wait to the data folder's neighbours."""
+"""Path from the folder of files that wait to the data folder's neighbours."""
 
 
 def backup_with(settings: Settings, folder: Path, table: str, change: Callable[[bytes], bytes]) -> Path:

@@ -18,7 +18,7 @@ COMMANDS = (
 )  # fmt: skip
 CYRILLIC = re.compile("[а-яё]", re.IGNORECASE)
 NAMES = {"BA", "hex", "cone", "ZZ", "json", "none", "imu", "health"}
-"""Of units, types and files."""
+"""Names of units, types and files."""
 
 
 @pytest.fixture(scope="module")

@@ -16,7 +16,7 @@ from tests.serving import serving
 
 @pytest.fixture(scope="module")
 def replicas(postgresql: PostgresDatabases, tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, str]]:
-    """Their addresses; the schema is there, as it is when a second one joins."""
+    """Addresses of two replicas; the schema is there, as it is when a second one joins."""
     shared = Settings(database_url=postgresql.migrated(), data_folder=tmp_path_factory.mktemp("shared"))
     own = {
         "IMU_HEALTH_PORT": "0",

@@ -20,7 +20,7 @@ from tests.serving import serving
 
 @dataclass(frozen=True)
 class Start:
-    """What a service printed from its start to its end, and answered in between."""
+    """Output of a service from its start to its end, and answers in between."""
 
     printed: str
     ready: int

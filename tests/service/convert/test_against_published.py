@@ -24,7 +24,7 @@ def recordings_let_go():
 
 
 FILES = {"kth-mimu": 2}
-"""How many are enough, where all take long."""
+"""Number of files that is enough, where all take long."""
 LARGE = ("kth-mimu", "mpu9150-five")
 """They take seven to twelve seconds to read, and 200 MB."""
 

@@ -1,4 +1,4 @@
-"""What every converter must do."""
+"""Requirements of every converter."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""What is particular to each public format."""
+"""Peculiarities of each public format."""
 
 import numpy as np
 import pytest

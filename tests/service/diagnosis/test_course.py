@@ -16,7 +16,7 @@ THREE = ("α", "size", "β")
 
 
 def marks(order: str) -> list[str]:
-    """What a course along an order is drawn with."""
+    """Marks with which a course along an order is drawn."""
     (angle, _) = course_charts(Course(order, THREE, VALUES), RESIDUALS, "course")
     return [layer["mark"]["type"] for layer in angle.spec["layer"]]
 

@@ -45,7 +45,7 @@ SPOIL = text("UPDATE calibrations SET document = :document WHERE session_id = :i
 
 @pytest.fixture
 def settings(settings_holding: SettingsHolding) -> Settings:
-    """Of a service that holds two sessions of a unit."""
+    """Settings of a service that holds two sessions of a unit."""
     return settings_holding(REFERENCE, LATER)
 
 

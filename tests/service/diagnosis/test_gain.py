@@ -1,4 +1,4 @@
-"""What naming causes is worth, of every kind of sensor in its own unit."""
+"""Gain from naming causes, for every kind of sensor in its own unit."""
 
 from dataclasses import replace
 
@@ -21,14 +21,14 @@ AFTER = Score(5 * MICRO_G, 1.0, -0.5, {ACCELEROMETER: 5 * MICRO_G, GYROSCOPE: 2 
 
 
 def block(*, mixed: bool) -> Calibration:
-    """Of accelerometers; ``mixed``: of which the last is taken for a gyro."""
+    """Calibration of accelerometers; ``mixed``: the last of which is taken for a gyro."""
     found = calibrate(read_session(accelerometer_block()))
     last = replace(found.sensors[-1], kind=GYROSCOPE)
     return replace(found, sensors=(*found.sensors[:-1], last)) if mixed else found
 
 
 def rms(before: Score, after: Score, *, mixed: bool) -> list[tuple[str, str, str]]:
-    """What each line of rms says."""
+    """Values in each line of rms."""
     calibration = block(mixed=mixed)
     view = gain_view(Gain(before, after, "positions", None), calibration, calibration, Verdict.PASS, None)
     return [(row.meaning, row.before, row.after) for row in view.rows if row.name == "rms"]

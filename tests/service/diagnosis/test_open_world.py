@@ -24,7 +24,7 @@ def shown(holding: Holding, document: dict[str, Any]) -> tuple[httpx.Client, str
 
 
 def headline(text: str) -> str:
-    """What a page says first."""
+    """The headline of a page."""
     return text[text.index("<h1>") : text.index("</h1>")]
 
 

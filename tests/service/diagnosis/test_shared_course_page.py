@@ -27,7 +27,7 @@ def held(holding: Holding) -> tuple[httpx.Client, str]:
 
 
 def page(client: httpx.Client, id: str, language: str) -> str:
-    """Its diagnosis page."""
+    """The session's diagnosis page."""
     answer = client.get(f"/sessions/{id}/diagnosis?lang={language}", headers=HTML)
     assert answer.status_code == 200, answer.text
     return answer.text

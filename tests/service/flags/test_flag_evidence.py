@@ -1,5 +1,6 @@
-"""What diagnoses tell of flags, one session after another: a matter closes when it is no longer found, and comes back
-with it; what is found on a stand is one flag of the stand, from all sessions on it."""
+"""Evidence of diagnoses on flags, one session after another: a matter closes when it is no longer found, and comes back
+with it; a matter of a stand is one flag of the stand, from all sessions on it.
+"""
 
 from datetime import UTC, datetime
 from itertools import permutations
@@ -56,7 +57,7 @@ def session(storage: Storage, unit: str, month: int) -> str:
 
 
 def diagnosed(storage: Storage, unit: str, month: int, evidence: FlagEvidence) -> None:
-    """As a diagnosis of the session would."""
+    """Stores evidence as a diagnosis of the session would."""
     id = session(storage, unit, month)
     made = StoredDiagnosis(id, 0, DiagnosisState.NAMED, "", None, None, None, "1", NOW)
     with storage.database.writing() as store:

@@ -10,7 +10,7 @@ WHO = {"by": "K. Ito", "why": "replacement <b>ordered</b>"}
 
 
 def form(client: httpx.Client) -> str:
-    """Where the flag's form on the unit's page is sent."""
+    """Address that the flag's form on the unit's page is sent to."""
     page = client.get("/units/BA-017", headers=HTML).text
     found = re.search(r'action="(/flags/\d+/acknowledge)"', page)
     assert found is not None

@@ -31,7 +31,7 @@ def flagged(client: httpx.Client) -> list[int]:
 
 
 def states(client: httpx.Client) -> list[str]:
-    """Of all flags, the oldest first."""
+    """States of all flags, the oldest first."""
     found = client.get("/api/v1/flags").json()["flags"]
     return [flag["state"] for flag in sorted(found, key=lambda flag: int(flag["id"]))]
 
@@ -100,7 +100,7 @@ def test_a_page_stays_where_it_was_when_flags_before_it_are_settled(
 
 
 def numbers(client: httpx.Client, query: str) -> list[int]:
-    """Of the flags on a page, in its order."""
+    """Numbers of the flags on a page, in its order."""
     boxes = html.fromstring(client.get(f"/flags{query}").text).xpath("//input[@name='flag']/@value")
     return [int(number) for number in boxes]
 

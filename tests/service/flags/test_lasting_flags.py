@@ -1,4 +1,4 @@
-"""What sessions show together is flagged once, until it is accepted into the model or somebody settles it."""
+"""An effect that sessions show together is flagged once, until it is accepted into the model or somebody settles it."""
 
 from dataclasses import replace
 from datetime import UTC, datetime
@@ -140,7 +140,7 @@ def counted(store: Store) -> tuple[int, int]:
 
 
 def of_stand(storage: Storage) -> None:
-    """What the unit shows is told of the stand."""
+    """Attributes the unit's effect to the stand."""
     with storage.database.writing() as store:
         answer = current(store, group(storage))
         assert answer is not None

@@ -32,11 +32,11 @@ NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 
 @dataclass
 class Mailbox:
-    """What a mail server was handed."""
+    """Mailbox of a mail server."""
 
     port: int = 0
     refusals: int = 0
-    """So many messages are put off."""
+    """Number of messages that are put off."""
     messages: list[str] = field(default_factory=list)
 
     @property

@@ -22,7 +22,7 @@ SESSIONS = {
     "February": session_bytes(seed=2, month=2),
     "failed": session_bytes(seed=3, month=3, a3_moved=300.0),
 }
-"""After the last one nothing is due: the unit is out of tolerance now."""
+"""Sessions by name; nothing is due after the last one: the unit is out of tolerance now."""
 ORDERS = (*[*permutations(SESSIONS)][::2], ("January", "withdrawn"))
 
 

@@ -140,7 +140,7 @@ def test_an_allowed_host_may_be_called_at_its_port_only() -> None:
 
 
 def delivered(storage: Storage, hosts: tuple[str, ...], clock: Callable[[], datetime]) -> int:
-    """In a thread of its own: the loop of a browser may run in this one."""
+    """Delivers in a thread of its own: the loop of a browser may run in this one."""
     with ThreadPoolExecutor(1) as thread:
         return thread.submit(deliver_due, storage, Ways(hosts), clock, Metrics()).result()
 

@@ -1,4 +1,4 @@
-"""What dashboards and notebooks ask of the API: forms of tables, times in milliseconds, answers that may be held."""
+"""The API for dashboards and notebooks: forms of tables, times in milliseconds, answers that may be cached."""
 
 import io
 from collections.abc import Callable

@@ -55,7 +55,7 @@ def test_the_dates_are_those_of_the_list(filled: Filled) -> None:
 
 
 def placed_by(settings: Settings) -> None:
-    """The same in a service of these settings."""
+    """Places them in a service of these settings."""
     with stores(settings) as storage:
         placed(storage)
 

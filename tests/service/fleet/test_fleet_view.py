@@ -1,4 +1,4 @@
-"""What a visitor of the fleet page asked to see, and its address."""
+"""The view that a visitor of the fleet page asked for, and its address."""
 
 import httpx
 import pytest

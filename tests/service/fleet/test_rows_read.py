@@ -20,7 +20,7 @@ from tests.service.made_sessions import session_bytes
 pytestmark = pytest.mark.parametrize("databases", ["postgresql"], indirect=True)
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 UNITS, SESSIONS, SHOWN = 500, 2, 5
-"""Of the fleet, of each of its units, and units on a page."""
+"""Units of the fleet, sessions of each of its units, and units on a page."""
 LISTS = {
     "the first page": FleetQuery(limit=SHOWN),
     "after a unit": FleetQuery(limit=SHOWN, after="BA-000-00100"),
@@ -38,7 +38,7 @@ def fleet(storage: Storage) -> None:
 
 
 def rows_read(storage: Storage, page: Callable[[Store], object]) -> Counter[str]:
-    """How many rows of each table the statements of a page go through."""
+    """Number of rows of each table that the statements of a page go through."""
     asked: list[tuple[str, Any]] = []
 
     def note(_c: object, _k: object, statement: str, parameters: object, *_: object) -> None:

@@ -1,4 +1,4 @@
-"""What is kept of the fleet as a whole is what its records say, however they came and went."""
+"""Facts kept about the fleet as a whole agree with its records, however these came and went."""
 
 from datetime import UTC, datetime
 from typing import Any
@@ -91,5 +91,5 @@ def test_a_store_from_before_is_counted_when_it_is_brought_up_to_date(storage: S
 
 
 def in_english(rows: list[tuple[Any, ...]]) -> list[tuple[Any, ...]]:
-    """Without the parts of the sentence, which an earlier schema does not keep."""
+    """The rows without the parts of the sentence, which an earlier schema does not keep."""
     return [(*values, reason.partition(PARTS)[0]) for *values, reason in rows]

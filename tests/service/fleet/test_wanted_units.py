@@ -1,4 +1,4 @@
-"""Which units a list holds, and in which order."""
+"""Units that a list holds, and their order."""
 
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta

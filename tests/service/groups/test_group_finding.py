@@ -1,4 +1,4 @@
-"""What a group's sessions show, in people's words."""
+"""Findings of a group in people's words."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""What the sessions of a unit, a type and a stand show together: which of them count, and when it is made anew."""
+"""Groups of the sessions of a unit, a type and a stand: the sessions that count, and when a group is made anew."""
 
 import json
 from datetime import UTC, datetime, timedelta
@@ -57,7 +57,7 @@ def told(answer: GroupAnswer) -> dict[str, Any]:
 
 
 def holds(storage: Storage) -> bool:
-    """Whether the stored answer of the unit is of what is known."""
+    """Whether the stored answer of the unit is up to date."""
     with storage.database.reading() as store:
         return current(store, Groups(store).find(Level.UNIT, UNIT)) is not None
 

@@ -1,4 +1,4 @@
-"""What the sessions of a unit, a type or a stand show together, over HTTP."""
+"""Findings of a unit, a type or a stand from all sessions together, over HTTP."""
 
 from datetime import UTC, datetime
 

@@ -1,4 +1,4 @@
-"""What the sessions of a unit show together, on its page."""
+"""Findings of a unit from all sessions together, on its page."""
 
 import re
 

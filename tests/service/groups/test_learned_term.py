@@ -24,7 +24,7 @@ TERM = EmpiricalTerm(
 
 
 def plain(text: str) -> str:
-    """With ordinary spaces."""
+    """The text with ordinary spaces."""
     return " ".join(text.replace("\u202f", " ").replace("\u00a0", " ").split())
 
 

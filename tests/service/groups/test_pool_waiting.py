@@ -1,4 +1,4 @@
-"""What groups of sessions show is made beside the requests, by one process at a time."""
+"""Findings of groups are made beside the requests, by one process at a time."""
 
 from collections.abc import Iterator
 from datetime import UTC, datetime

@@ -28,7 +28,7 @@ GYRO_BIAS = np.array([[0.001, -0.002, 0.003], [0.002, 0.001, -0.001]])
 NOISE, GYRO_NOISE = 0.005, 0.0005
 """One sigma of a sample."""
 START_NS = 1_780_000_000 * 10**9
-"""Of a robot's clock: 2026-05-28."""
+"""Time of a robot's clock, ns: 2026-05-28."""
 UUID = "0002000000003439373332335105003b0025"
 STORE = get_typestore(Stores.ROS2_HUMBLE)
 
@@ -144,7 +144,7 @@ def mcap(found: list[Imu], **changes: bool) -> bytes:
 
 
 def bag(found: list[Imu], **changes: bool) -> bytes:
-    """The same in SQLite: the database of a rosbag2."""
+    """The messages in SQLite: the database of a rosbag2."""
     with TemporaryDirectory() as folder:
         with BagWriter(Path(folder) / "bag", version=9) as writer:
             connections = {}

@@ -119,7 +119,7 @@ def test_a_log_that_was_written_over_is_refused() -> None:
 
 
 def read_or_refused(content: bytes) -> None:
-    """What is no table is refused with its problems."""
+    """A file that is no table is refused with its problems."""
     refusal = None
     try:
         look_at(content, "log")

@@ -15,21 +15,21 @@ from tests.service.uploads.test_layouts_page import ADDRESS, sent, shown
 FACTS = {"site": {"gravity_m_s2": made.GRAVITY}, "started_at": "2026-05-28T20:00:00Z"}
 
 SAID = {"fact.day": "2026-05-28", "fact.clock": "09:00", "fact.offset": "Z", "fact.site.gravity_m_s2": "9.81"}
-"""What somebody writes into the form."""
+"""Entries of the form."""
 
 
 flown = cache(made.imus)
-"""What the IMUs of the log measured."""
+"""Measurements of the IMUs in the log."""
 
 
 @cache
 def log(kind: str) -> bytes:
-    """Of a kind, with all IMUs."""
+    """A log of a kind, with all IMUs."""
     return made.WRITERS[kind](flown())
 
 
 def previewed(client: httpx.Client, content: bytes, mapping: dict[str, Any] | None = None, unit: str = "") -> Any:
-    """How a log is understood."""
+    """Preview of a log."""
     stated = {} if mapping is None else {"mapping": json.dumps(mapping)}
     sent = {"files": {"file": ("flight.log", content)}, "data": stated, "params": {"unit": unit}}
     return client.post("/api/v1/layouts/preview", **sent).raise_for_status().json()

@@ -24,7 +24,7 @@ def metadata(document):
 
 
 def rounded(document):
-    """The same with 15 digits, which is what a spreadsheet keeps."""
+    """The document with 15 digits, which is what a spreadsheet keeps."""
     table = document["table"]
     for name, cells in table.items():
         table[name] = [float(f"{cell:.15g}") if isinstance(cell, float) else cell for cell in cells]

@@ -34,7 +34,7 @@ TEXTS = {
 
 
 def mapping_for(content, **changes):
-    """As it is proposed, with the facts."""
+    """The mapping as it is proposed, with the facts."""
     document = tables.own_document()
     seen = look_at(content, "own")
     columns = understood([SeenColumn(**column) for column in seen["columns"]], document["sensors"])

@@ -28,7 +28,7 @@ pytest_generate_tests = all_on_one_engine
 
 
 def upload(client: httpx.Client, content: bytes) -> httpx.Response:
-    """Of a binary file."""
+    """Uploads a binary file."""
     return client.post("/api/v1/sessions", files={"file": ("file", content)})
 
 

@@ -22,7 +22,7 @@ TYPE = "BA-6"
 
 
 def fill(storage: Storage) -> None:
-    """As many units of one type as say what is usual."""
+    """Stores as many units of one type as show what is usual."""
     for number in range(FEWEST):
         upload(
             storage, session_bytes(unit_type=TYPE, unit=f"OK-{number}", seed=20 + number), "a.json", NOW, outlook=False

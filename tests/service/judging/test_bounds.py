@@ -1,4 +1,4 @@
-"""What no gravity, stand or sensor can do is the unit's or a slip: it is never fit, and says so."""
+"""A change beyond any gravity, stand or sensor is the unit's or a slip: the unit is never fit, and told why."""
 
 import json
 

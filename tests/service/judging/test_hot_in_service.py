@@ -8,7 +8,7 @@ from tests.service.recordings import recording_document
 
 
 def at(celsius: float, document: dict) -> bytes:
-    """The same at a temperature."""
+    """The document at a temperature."""
     rows = len(document["table"]["A1"])
     return json.dumps(document | {"table": document["table"] | {"temperature_c": [celsius] * rows}}).encode()
 

@@ -13,7 +13,7 @@ from tests.service.made_sessions import session_bytes
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 APRIL, JUNE, AUGUST = (datetime(2026, month, 1, 9, tzinfo=UTC) for month in (4, 6, 8))
-"""To the second when the sessions of these months are measured."""
+"""Times of measurement in these months, to the second."""
 
 
 def stored(storage: Storage, month: int) -> str:
@@ -27,7 +27,7 @@ def serviced(storage: Storage, at: datetime) -> None:
 
 
 def chosen(storage: Storage, at: datetime, programme: str = TWO_AXIS_STAND) -> EpochReference:
-    """What a session measured at a time would be judged against."""
+    """The reference for a session measured at a time."""
     with storage.database.reading() as store:
         return reference_of(store, Units(store).key("BA-017"), ACCELEROMETER, programme, at)
 

@@ -32,7 +32,7 @@ NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 
 
 def stored(storage: Storage, id: str) -> tuple[Verdict, Reservations]:
-    """What is kept of a session's verdict."""
+    """Stored verdict of a session, with its reservations."""
     with storage.database.reading() as store:
         session = Sessions(store).get(id)
     return session.verdict, session.reservations

@@ -33,12 +33,12 @@ def said(client: httpx.Client) -> str:
 
 
 def clause(client: httpx.Client) -> str:
-    """What follows its ``but``."""
+    """The clause after its ``but``."""
     return plain(said(client).partition(", but ")[2])
 
 
 def plain(text: str) -> str:
-    """With ordinary spaces, and none that only allow a line to break."""
+    """The text with ordinary spaces, and none that only allow a line to break."""
     return " ".join(text.replace("\u200b", "").split())
 
 

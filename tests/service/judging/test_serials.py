@@ -1,4 +1,4 @@
-"""Which serial numbers are slips of writing, and which are the next units of a fleet."""
+"""Serial numbers that are slips of writing, and those that are the next units of a fleet."""
 
 import pytest
 
@@ -20,7 +20,7 @@ def test_two_encodings_of_a_letter_are_one_name() -> None:
 
 
 def asked_of(new: str, fleet: list[str]) -> bool:
-    """Whether a new unit is taken for one of a fleet by how it is written."""
+    """Whether a new unit is taken for one of a fleet by its spelling."""
     return any(folded(new) == folded(one) or (is_one_keystroke(new, one) and is_slip(new, one, fleet)) for one in fleet)
 
 

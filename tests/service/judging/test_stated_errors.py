@@ -10,7 +10,7 @@ from tests.service.judging.test_cause_sizes import BY
 
 
 def kinds(verdict: Verdict | None, factor: float) -> list[DoubtKind]:
-    """What a verdict is qualified by where errors are ``factor`` times what is stated."""
+    """Reservations of a verdict where errors are ``factor`` times the stated ones."""
     noise = (NoiseScale("accelerometer", factor, 60.0),)
     return [one.kind for one in reservations_of(Doubted(verdict, (), (), noise, BY, ()))]
 

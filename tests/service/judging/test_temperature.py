@@ -30,7 +30,7 @@ SESSIONS = (at(20.0, 1), at(24.0, 2), at(35.0, 3, moved=90.0))
 
 
 def plain(text: str) -> str:
-    """Without spaces that do not break."""
+    """The text without spaces that do not break."""
     return text.replace("\u00a0", " ").replace("\u202f", " ")
 
 
@@ -58,11 +58,13 @@ WARM, DRIFTED = at(33.0, 8, moved=PER_DEGREE * 13), at(33.0, 9, moved=PER_DEGREE
 
 
 COVERED = {"lowest": 12.0, "highest": 34.0, "reference": 20.0}
-"""By the sessions that the law was learned from: those far from the reference failed before it was known."""
+"""Temperatures covered by the sessions that the law was learned from: those far from the reference failed before it was
+known.
+"""
 
 
 def is_covered_everywhere(client: httpx.Client, id: str) -> bool:
-    """Whether all that shows the session says so."""
+    """Whether everything that shows the session states its temperatures."""
     unit, session = "/api/v1/units/BA-017", f"/api/v1/sessions/{id}"
     answers = (client.get(path).json() for path in (unit, session, f"{session}/correction"))
     pages = (client.get(path).text for path in ("/units/BA-017", f"/sessions/{id}"))
@@ -73,7 +75,7 @@ def is_covered_everywhere(client: httpx.Client, id: str) -> bool:
 
 
 def test_the_law_of_the_sessions_before_brings_a_session_to_its_reference(holding: Holding) -> None:
-    """In any order of arrival; what moved beside the law fails."""
+    """Sessions may come in any order; a change beside the law fails."""
     client = holding(WARM, *LEARNED[3:], DRIFTED, *LEARNED[:3])
     warm, drifted = (client.get(f"/api/v1/sessions/{session_id(s)}").json() for s in (WARM, DRIFTED))
     assert (warm["verdict"], drifted["verdict"]) == ("pass", "fail")

@@ -1,4 +1,4 @@
-"""What earlier sessions over temperature tell of a session that was measured outside them."""
+"""The effect of temperature on a session that was measured outside those of earlier sessions."""
 
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta

@@ -1,4 +1,4 @@
-"""What a unit may be used for: one row of facts a case, as docs/api.md tables them."""
+"""Uses that a unit is fit for: one row of facts a case, as docs/api.md tables them."""
 
 from dataclasses import replace
 from datetime import date, timedelta

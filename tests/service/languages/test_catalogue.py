@@ -23,7 +23,7 @@ def stored(language: Language) -> Catalog:
 
 @cache
 def said(language: Language) -> Catalog:
-    """As the sources have it now."""
+    """The catalogue as the sources have it now."""
     return updated(language, messages())
 
 

@@ -1,4 +1,4 @@
-"""Which language somebody gets."""
+"""The language that somebody gets."""
 
 import pytest
 

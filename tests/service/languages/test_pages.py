@@ -28,7 +28,7 @@ ADDRESSES = {
     "/unit-types/{name:path}": "/unit-types/accelerometer × 6, V",
     "/uploads/{id}": "/uploads/1",
 }
-"""Where an address needs a name."""
+"""Addresses for routes that need a name."""
 NO_PAGES = ("/static/{name}", "/oidc/start", "/oidc/callback", "/sessions/{id}/outcome", "/sign-in/{secret}")
 NAMES = frozenset(
     (

@@ -59,6 +59,6 @@ def test_a_sentence_without_its_parts_is_found(source: str, expected: list[str])
 
 
 def test_every_sentence_keeps_its_parts() -> None:
-    """What is made by an f-string can be said in no other language: it is made by `estimator.message.say`."""
+    """A sentence made by an f-string cannot be translated: sentences are made by `estimator.message.say`."""
     found = {path.name: set(finished(path.read_text("utf-8"))) - NAMES for path in modules()}
     assert {name: texts for name, texts in found.items() if texts} == {}

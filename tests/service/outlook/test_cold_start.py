@@ -37,7 +37,7 @@ def measured(storage: Storage) -> tuple[str, str]:
 
 
 def changes(storage: Storage, unit: str) -> dict[str, float]:
-    """By how many standard uncertainties every zero differs in that session from the one before."""
+    """Difference of every zero in that session from the one before, in standard uncertainties."""
     with storage.database.reading() as store:
         found = known_of(store, unit)
     zeros = ((key.sensor, t) for key, t in zip(found.keys, found.tracks, strict=True) if key.parameter == "bias")
@@ -55,7 +55,7 @@ def flagged(storage: Storage, unit: str) -> set[str]:
 
 
 def due(storage: Storage, unit: str) -> datetime:
-    """When it is to be calibrated next."""
+    """Date of the next calibration."""
     with storage.database.reading() as store:
         found = outlook_of(store, unit, NOW).due
     assert found is not None

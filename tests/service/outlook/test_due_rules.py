@@ -61,7 +61,7 @@ def serviced(storage: Storage) -> None:
 
 @dataclass(frozen=True)
 class Said:
-    """What is said of a unit's date, wherever it is said."""
+    """Statements about a unit's date, wherever they stand."""
 
     due: date | None
     rule: str
@@ -74,7 +74,7 @@ class Said:
 
 
 def said(client: httpx.Client) -> Said:
-    """Everything of the one unit."""
+    """All statements about the one unit's due date."""
     outlook = client.get(f"{UNIT}/outlook").raise_for_status().json()
     page = client.get("/units/BA-017", headers={"Accept": "text/html"}).raise_for_status().text
     label = text_of(client.get(f"{UNIT}/label.pdf").raise_for_status().content)
@@ -122,7 +122,7 @@ def test_the_rule_is_said_everywhere_with_its_date(client: httpx.Client, storage
 
 
 def test_the_day_in_the_sentence_sets_the_due_date(client: httpx.Client, storage: Storage) -> None:
-    """Of a risk the day on which it reaches its level; of an interval the day that it is counted from."""
+    """The day on which a risk reaches its level, or the day that an interval is counted from."""
     measure(storage, DRIFTS)
     found = said(client)
     assert found.due is not None

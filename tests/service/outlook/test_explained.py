@@ -1,4 +1,4 @@
-"""What a diagnosis gives to the stand is no change of a sensor: neither flags nor dates count it."""
+"""An effect that a diagnosis attributes to the stand is no change of a sensor: neither flags nor dates count it."""
 
 import json
 from datetime import UTC, datetime
@@ -28,7 +28,7 @@ SOUND, OFF, AFTER = (1, 3, 4, 5, 7, 8), 9, 10
 """Months of sessions before, while and after the head's scale was off centre."""
 OFF_CENTRE = DemoEffect("beta-eccentricity", (80e-6, -40e-6))
 SPOILT, SPARED = ("A2", "bias"), ("A1", "bias")
-"""What it moves most, by half a tolerance, and what it does not move."""
+"""The parameter that it moves most, by half a tolerance, and one that it does not move."""
 
 
 @cache

@@ -64,5 +64,5 @@ def test_an_event_is_written_to_the_letter() -> None:
 
 
 def printable(text: str) -> str:
-    """What a calendar can hold of a text."""
+    """The characters of a text that a calendar can hold."""
     return "".join(c for c in text if (c >= " " and c != "\x7f") or c == "\n")

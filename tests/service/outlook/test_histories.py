@@ -1,4 +1,4 @@
-"""What a history is made of where its sessions were measured at one temperature, and where at several."""
+"""Histories of sessions measured at one temperature, and at several."""
 
 from datetime import UTC, datetime, timedelta
 
@@ -15,7 +15,7 @@ WHOLE = np.array([1e-5, -2e-5, 4e-5, 3e-5, -1e-5])
 
 
 def change(temperatures: tuple[float, ...]) -> np.ndarray:
-    """Of a scale factor that is judged without what all have in common."""
+    """Change of a scale factor that is judged without the common part."""
     rows = [
         ChangeRow(
             at=START + timedelta(days=60 * (k + 1)), block="accelerometer", programme="two-axis-stand", sensor="A1",

@@ -1,4 +1,4 @@
-"""When a unit must come back: from uploads to dates, across services, against its population."""
+"""Due dates of units: from uploads to dates, across services, against their population."""
 
 from datetime import UTC, datetime, timedelta
 
@@ -26,7 +26,7 @@ def measure(storage: Storage, months: dict[int, float], unit: str = "BA-017", **
 
 
 def outlook(storage: Storage, now: datetime, unit: str = "BA-017") -> UnitOutlook:
-    """Of a unit, at a time."""
+    """Outlook of a unit, at a time."""
     with storage.database.reading() as store:
         return outlook_of(store, unit, now)
 

@@ -1,4 +1,4 @@
-"""When a unit must come back, in words and in charts; who stands out of the fleet."""
+"""Due dates in words and in charts, and the outliers of the fleet."""
 
 from dataclasses import replace
 from datetime import timedelta
@@ -102,7 +102,7 @@ def test_the_fleet_page_marks_what_is_overdue() -> None:
 
 
 def rates_of(units: int) -> list[Rate]:
-    """Of units of one type whose biases drift a little, in two lots."""
+    """Rates of units of one type whose biases drift a little, in two lots."""
     return [
         Rate("RA-6", "L1" if i % 2 else "L2", f"U{i}", "A1", "accelerometer", "bias", 0.02 * (i % 5 - 2), 0.03)
         for i in range(units)
@@ -110,7 +110,7 @@ def rates_of(units: int) -> list[Rate]:
 
 
 def found_in(rates: list[Rate]) -> tuple[Standout, ...]:
-    """Who stands out of a fleet of one type."""
+    """Outliers of a fleet of one type."""
     made = populations(rates)
     return standouts(FarOut(made, sum(one.rates for one in made), sum(one.lots for one in made)))
 

@@ -30,7 +30,7 @@ def session_at(month: int, degrees: float) -> bytes:
 
 
 def due(client: httpx.Client) -> str:
-    """As soon as the outlook that is worked out beside the requests is there."""
+    """The due date, as soon as the outlook that is worked out beside the requests is there."""
     return until(lambda: client.get(f"/api/v1/units/{UNIT}/outlook").raise_for_status().json()["due"])
 
 

@@ -1,4 +1,4 @@
-"""Which changes have a flag: the share of the tolerance that the type says, and what may pass before the due date."""
+"""Changes that get a flag: beyond the share of the tolerance that the type states, or before the due date."""
 
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta

@@ -55,5 +55,5 @@ def unit_summary(serial: str = "BA-017", verdict: Verdict = Verdict.PASS, margin
 
 
 def uses_of(*units: UnitSummary) -> dict[str, Usable]:
-    """What units may be used for of which nothing else is known, by serial number."""
+    """Use of units of which nothing else is known, by serial number."""
     return {unit.serial: usable(UseFacts(unit), NOON) for unit in units}

@@ -70,7 +70,7 @@ def diagonal_session(seed: int) -> bytes:
 
 
 def simulated_axes(found: Calibration, rng: np.random.Generator) -> np.ndarray:
-    """(n, 3) what A2's axis could have come out as, by the session's own covariance."""
+    """(n, 3) draws of A2's axis by the session's own covariance."""
     a2, first = found.sensor("A2"), found.names.index("A2.axis_1")
     own = found.repeatability[first : first + 2, first : first + 2]
     turns = rng.multivariate_normal(np.zeros(2), own, 40_000, method="cholesky")

@@ -26,13 +26,13 @@ FROM, TO = 1_735_689_600_000, 1_830_297_600_000
 """2025 to 2027, in milliseconds."""
 SHOWN = f"to_timestamp({FROM // 1000}) AND to_timestamp({TO // 1000})"
 TYPES = {"string": str, "number": int | float, "timestamp_epoch": int, "timestamp": str, "boolean": bool}
-"""Of Infinity's columns, as JSON brings them."""
+"""Python types of Infinity's columns, as JSON brings them."""
 FORMATS: dict[str | None, Callable[[str], str]] = {
     None: str,
     "percentencode": lambda value: quote(value, safe=""),
     "sqlstring": lambda value: "'" + value.replace("'", "''") + "'",
 }
-"""Of Grafana's variables."""
+"""Formats of Grafana's variables."""
 on_postgresql = pytest.mark.parametrize("databases", ["postgresql"], indirect=True)
 Query = dict[str, Any]
 
@@ -54,7 +54,7 @@ def filled(text: str, known: dict[str, str]) -> str:
 
 
 def chosen(name: str, ask: Any) -> dict[str, str]:
-    """What the dashboard's own variables offer first, one after another."""
+    """The first value that each of the dashboard's own variables offers, one after another."""
     known = {"__from": str(FROM), "__to": str(TO)}
     for variable in dashboard(name)["templating"]["list"]:
         if variable["type"] == "query":

@@ -20,7 +20,7 @@ from tests.serving import http_client, limited_client, running
 
 HTML = {"Accept": "text/html"}
 MOST_QUERIES = 12
-"""Of the page of a session, which asks most: what it shows comes from as many tables."""
+"""Most queries of the page of a session, which asks most: its content comes from as many tables."""
 
 
 def post(client: httpx.Client, content: bytes, **headers: str) -> httpx.Response:
@@ -148,7 +148,7 @@ def counted(app: FastAPI) -> Iterator[list[str]]:
 
 
 def asked(client: httpx.Client, path: str, statements: list[str]) -> Iterator[int]:
-    """How many questions each of three looks at a page asks; the work beside the requests asks now and then too."""
+    """Number of queries of each of three looks at a page; the work beside the requests asks now and then too."""
     for _ in range(3):
         statements.clear()
         assert client.get(path, headers=HTML).status_code == 200

@@ -1,4 +1,4 @@
-"""What each role has at hand at the top of every page."""
+"""Links of each role at the top of every page."""
 
 from dataclasses import replace
 

@@ -80,7 +80,7 @@ def test_nothing_is_lost_for_a_block_that_moves_too_much(holding: Holding) -> No
 
 
 def test_a_channel_that_is_cut_off_at_times_is_said_to_be(holding: Holding) -> None:
-    """With its share of the samples, in the verdict that names it and on the page."""
+    """The share of its samples is in the verdict that names it and on the page."""
     document = recording_document(a3_moved=400.0)
     readings = np.array(document["table"]["A3"])
     document["table"]["A3"] = np.minimum(readings, np.quantile(readings, 0.96)).tolist()

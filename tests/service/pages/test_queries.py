@@ -71,7 +71,7 @@ def counted(storage: Storage) -> Iterator[list[str]]:
 
 
 def queries(storage: Storage, page: Page) -> int:
-    """How many queries a page costs."""
+    """Number of queries that a page costs."""
     with storage.database.reading() as store, counted(storage) as statements:
         page(store)
     return sum(not statement.startswith("BEGIN") for statement in statements)

@@ -1,4 +1,4 @@
-"""What holds for the text of every page."""
+"""Rules for the text of every page."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""What waits for a person, by role."""
+"""Tasks that wait for a person, by role."""
 
 import pytest
 

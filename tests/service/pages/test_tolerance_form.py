@@ -18,7 +18,7 @@ def typed(holding: Holding) -> httpx.Client:
 
 
 def shown(client: httpx.Client) -> dict[str, str]:
-    """What the form holds."""
+    """Fields of the form."""
     form = html.fromstring(client.get(TYPE).text).xpath("//form[contains(@action, '/tolerances')]")[0]
     return {str(name): str(value) for name, value in form.fields.items()}
 

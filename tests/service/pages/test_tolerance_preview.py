@@ -1,4 +1,4 @@
-"""What other tolerances would change is seen before they are set, and nothing is stored by looking."""
+"""The effect of other tolerances is shown before they are set, and nothing is stored by looking."""
 
 import httpx
 import pytest

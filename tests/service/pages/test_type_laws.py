@@ -38,7 +38,7 @@ def wanted(in_force: bool) -> dict[str, object]:
 def test_a_unit_with_few_sessions_is_judged_by_the_laws_of_its_type(
     holding: Holding, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Of two units, so that the test is quick."""
+    """Two units are enough here, so that the test is quick."""
     monkeypatch.setattr(type_laws, "FEWEST_UNITS", 2)
     monkeypatch.setattr(type_laws, "FEWEST_SENSORS", 8)
     client = holding(*KNOWN, *FIRST, BEFORE)

@@ -1,4 +1,4 @@
-"""What stands in a PDF, page by page."""
+"""Text of a PDF, page by page."""
 
 import io
 

@@ -101,7 +101,7 @@ def sensor(root: Element, rng: random.Random) -> None:
 
 
 def name(root: Element, rng: random.Random) -> None:
-    """Who issued it, for whom, who measured, when it was issued."""
+    """The issuer, the customer, the person who measured, or the date of issue."""
     path = "//dcc:contact//dcc:content | //dcc:customer//dcc:content | //dcc:respPerson//dcc:content | //dcc:issueDate"
     changed = _found(root, f"{path} | //dcc:uniqueIdentifier", rng)
     changed.text = ("3" if changed.text[0] == "2" else "2") + changed.text[1:]
@@ -119,9 +119,9 @@ def seal(root: Element, rng: random.Random) -> None:
 
 
 FROM_FILE = (value, limit, variance, measure, verdict, day, file, moved, gone, sensor)
-"""What contradicts the file, even where the hash is made anew and the seal taken off."""
+"""Changes that contradict the file, even where the hash is made anew and the seal taken off."""
 GUARDED = (digit, name, seal, *FROM_FILE)
-"""What hash and seal tell."""
+"""Changes that hash and seal reveal."""
 
 
 def mutated(sealed: bytes, seed: int) -> bytes:
@@ -136,7 +136,7 @@ def mutated(sealed: bytes, seed: int) -> bytes:
 
 
 def anew(root: Element) -> bytes:
-    """Without a seal, and with a hash that fits."""
+    """The certificate without a seal, and with a hash that fits."""
     for own in root.findall(SIGNATURE):
         root.remove(own)
     path = "//dcc:coreData/dcc:identifications/dcc:identification[last()]/dcc:value"

@@ -1,4 +1,4 @@
-"""What papers name, on pages: customers, and a broken chain above the parameters."""
+"""Names of papers on pages: customers, and a broken chain above the parameters."""
 
 import httpx
 

@@ -23,7 +23,7 @@ NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 
 
 def content_hash(storage: Storage, order: tuple[int, ...]) -> str:
-    """Of the latest session's certificate, once the records came hour by hour; the last number is the service's."""
+    """Hash of the latest session's certificate, once records came hour by hour; the last number is the service's."""
     for hour, number in enumerate(order):
         now = NOW + timedelta(hours=hour)
         if number == len(SESSIONS):

@@ -40,7 +40,7 @@ def found(root: Element, sensor: str, name: str) -> dict[str, str]:
 
 
 def text(element: Element) -> str:
-    """What an element is called."""
+    """Name of an element."""
     return element.findtext(f"{DCC}name/{DCC}content") or ""
 
 

@@ -43,7 +43,7 @@ def unit_of(client: httpx.Client) -> UnitSummary:
 
 
 def use_of(unit: UnitSummary) -> Usable:
-    """What it may be used for, as far as its summary tells."""
+    """Use of the unit, as far as its summary tells."""
     return usable(UseFacts(unit), NOW)
 
 

@@ -34,7 +34,7 @@ def text(client: httpx.Client, id: str, system: str, **more: str) -> str:
 
 
 def driver(document: Document) -> tuple[Array, Array]:
-    """What the nominal numbers make of the readings, and what the stand applied; (R, 3), m/s²."""
+    """The vectors by the nominal numbers, and those that the stand applied; (R, 3), m/s²."""
     session = read_session(document)
     [one] = correction_of(session, calibrate(session)).blocks
     return nominal_vectors(session, one, session.readings), stand_geometry(session).n[:, 0]
@@ -60,7 +60,7 @@ def ros2(found: str, raw: Array) -> Array:
 
 
 def kalibr(found: str, raw: Array) -> Array:
-    """In block axes again."""
+    """The vectors turned back into block axes."""
     imu = yaml.safe_load(found)["imu0"]
     lower = np.array(imu["accelerometers"]["M"])
     assert np.allclose(lower, np.tril(lower), rtol=0, atol=1e-15)

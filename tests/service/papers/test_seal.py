@@ -60,7 +60,7 @@ def approved(settings: Settings, staff: Staff, key_file: Path) -> tuple[bytes, b
 
 
 def is_sound(pdf: bytes, key_file: Path) -> bool:
-    """What pyhanko's validator says, with the certificate as the only one that is trusted."""
+    """Verdict of pyhanko's validator, with the certificate as the only one that is trusted."""
     blocks = pem.unarmor(key_file.read_bytes(), multiple=True)
     trusted = [x509.Certificate.load(content) for kind, _, content in blocks if kind == "CERTIFICATE"]
     embedded = PdfFileReader(io.BytesIO(pdf)).embedded_signatures[0]
@@ -70,7 +70,7 @@ def is_sound(pdf: bytes, key_file: Path) -> bool:
 
 
 def openssl(pdf: bytes, key_file: Path, folder: Path) -> bool:
-    """What openssl says of the signature, cut out of the file by hand (ISO 32000-1, 12.8.1)."""
+    """Verdict of openssl on the signature, cut out of the file by hand (ISO 32000-1, 12.8.1)."""
     found = pdf.rindex(b"/ByteRange")
     numbers = pdf[pdf.index(b"[", found) + 1 : pdf.index(b"]", found)].split()
     start, first, second, last = map(int, numbers)
@@ -113,12 +113,12 @@ def _other(folder: Path) -> Path:
 
 
 def digest_of(element: etree._Element) -> str:
-    """Of the element as canonical XML 1.1; here no node differs from 1.0, which lxml writes."""
+    """Digest of the element as canonical XML 1.1; here no node differs from 1.0, which lxml writes."""
     return base64.b64encode(sha256(etree.tostring(element, method="c14n")).digest()).decode()
 
 
 def is_signed(content: bytes) -> bool:
-    """By the XML signature recommendation, step by step, without the library that signed."""
+    """Whether it is signed by the XML signature recommendation, step by step, without the library that signed."""
     root = etree.fromstring(content)
     [signature] = root.findall(f"{DS}Signature")
     info = signature.find(f"{DS}SignedInfo")

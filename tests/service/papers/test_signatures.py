@@ -29,7 +29,7 @@ from tests.stock import stores
 ID = session_id(FAILED[-1])
 OWN = f"/api/v1/sessions/{ID}"
 both = pytest.mark.parametrize("databases", ENGINES, indirect=True)
-"""For what statements to a database decide."""
+"""Runs on both engines, for behaviour that statements to a database decide."""
 
 
 def issued(settings: Settings) -> None:
@@ -42,7 +42,7 @@ def issued(settings: Settings) -> None:
 
 @pytest.fixture
 def settings(settings_filled: SettingsFilled) -> Settings:
-    """Of a laboratory that issued a certificate."""
+    """Settings of a laboratory that issued a certificate."""
     return settings_filled(issued)
 
 
@@ -191,7 +191,7 @@ def test_a_session_that_is_withdrawn_is_noticed(http: httpx.Client, staff: Staff
 
 
 def tampered(settings: Settings, table: str, change: str) -> None:
-    """As somebody would who may do everything to the database."""
+    """Changes a table as somebody would who may do everything to the database."""
     engine = open_engine(settings.database)
     with engine.begin() as connection:
         if connection.dialect.name == "postgresql":

@@ -41,14 +41,14 @@ NOTHING = Beside()
 
 
 def certificate(client: httpx.Client, id: str = ID) -> bytes:
-    """As XML."""
+    """The certificate as XML."""
     answer = client.get(f"/api/v1/sessions/{id}/certificate?format=dcc")
     answer.raise_for_status()
     return answer.content
 
 
 def raw(client: httpx.Client, id: str) -> RawFile:
-    """Its session's file."""
+    """The file of a certificate's session."""
     return RawFile("session.json", client.get(f"/api/v1/sessions/{id}/file").content)
 
 
@@ -66,7 +66,7 @@ def key_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def seal(key_file: Path) -> Seal:
-    """Of that key."""
+    """Seal of that key."""
     found = seal_of(key_file, None)
     assert found is not None
     return found
@@ -80,7 +80,7 @@ def trusted(key_file: Path) -> bytes:
 
 @pytest.fixture
 def client(settings_holding: SettingsHolding) -> Iterator[httpx.Client]:
-    """Of a laboratory that states everything, with a reference and a session out of tolerance."""
+    """HTTP to a laboratory that states everything, with a reference and a session out of tolerance."""
     with named(settings_holding(*FAILED, diagnosed=True)) as http:
         state_all(http)
         yield http
@@ -126,7 +126,7 @@ def test_a_difference_says_what_is_printed_and_what_is_computed(printed: bytes) 
 
 
 def once(step: Callable[..., Any]) -> Callable[..., Any]:
-    """Its first answer for every call: no change touches what it rests on, and many would take long."""
+    """Answers every call with the step's first result: no change touches what it rests on, and many would take long."""
     made = list[Any]()
 
     def answered(*given: Any, **named: Any) -> Any:
@@ -163,7 +163,7 @@ def test_each_file_is_calibrated_and_the_session_judged_once(
 
 
 def counted(step: Callable[..., Any], called: list[str]) -> Callable[..., Any]:
-    """The same, with its name noted at every call."""
+    """The step, with its name noted at every call."""
 
     def answered(*given: Any, **named: Any) -> Any:
         called.append(step.__name__)
@@ -215,7 +215,7 @@ def test_the_command_s_exit_code_says_it(run: Run, printed: bytes, tmp_path: Pat
 
 @pytest.mark.slow
 def test_another_build_of_the_linear_algebra_agrees(printed: bytes, tmp_path: Path) -> None:
-    """That of a processor without wide registers, which every other one can run."""
+    """The other build is for a processor without wide registers, which every other one can run."""
     (tmp_path / "c.xml").write_bytes(printed)
     (tmp_path / "s.json").write_bytes(FAILED[-1])
     environment = os.environ | {"OPENBLAS_CORETYPE": "Prescott"}

@@ -33,7 +33,7 @@ def made_key(number: int) -> rsa.RSAPrivateKey:
 
 @dataclass
 class OpenId:
-    """What the provider knows, and how it lies."""
+    """State of the provider, and the ways in which it lies."""
 
     now: int
     issuer: str = ""
@@ -56,7 +56,7 @@ class OpenId:
         return {"keys": [{"kty": "RSA", "kid": "1", "use": "sig", "alg": "RS256", "n": n, "e": e}]}
 
     def authorized(self, asked: Json) -> str:
-        """Where the browser is sent back to, once the person has signed in."""
+        """Address to which the browser is sent back, once the person has signed in."""
         assert (asked["response_type"], asked["client_id"], asked["code_challenge_method"]) == ("code", CLIENT, "S256")
         assert "openid" in asked["scope"].split()
         code = f"code-{len(self.codes)}"
@@ -88,7 +88,7 @@ class OpenId:
 
 
 class Handler(BaseHTTPRequestHandler):
-    """Its addresses."""
+    """Addresses of the provider."""
 
     openid: OpenId
 

@@ -10,7 +10,7 @@ from service.storage import Storage
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 PASSWORD = "correct horse battery"
-"""Of everybody."""
+"""Password of everybody."""
 
 
 @dataclass(frozen=True)
@@ -20,7 +20,7 @@ class Staff:
     tokens: dict[Role, str]
 
     def headers(self, role: Role | None) -> dict[str, str]:
-        """Of nobody, none."""
+        """Headers of a role; none for nobody."""
         return {} if role is None else {"Authorization": f"Bearer {self.tokens[role]}"}
 
 

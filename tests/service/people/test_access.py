@@ -48,7 +48,7 @@ def http(required: Settings, staff: Staff) -> Iterator[httpx.Client]:
 
 
 def routes(app: Any) -> set[Route]:
-    """What the application answers, as its route table writes it."""
+    """Routes of the application, as its route table writes them."""
     found = iter_route_contexts(app.router.routes)
     return {(method, one.path) for one in found for method in one.methods if method != "HEAD"} - {OPENAPI}
 
@@ -58,7 +58,7 @@ def test_every_route_has_a_rule_and_every_rule_a_route(settings: Settings) -> No
 
 
 def is_turned_away(http: httpx.Client, route: Route, headers: dict[str, str]) -> bool:
-    """Whether an empty request to a route ends before anything is done; what it would be told otherwise is open."""
+    """Whether an empty request to a route ends before anything is done; the answer to others is not looked at."""
     method, path = route
     for name, value in FILLED.items():
         path = path.replace(name, value)

@@ -1,5 +1,6 @@
-"""How often a password may be tried: one bound for all processes on a database, whoever asks at once; and whoever
-guesses keeps nobody else out."""
+"""Limits on password attempts: one for all processes on a database, whoever asks at once; and whoever guesses keeps
+nobody else out.
+"""
 
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -31,7 +32,7 @@ ATTEMPT = SignInAttempt("k.ito", "203.0.113.9")
 
 
 def was_looked_at(storage: Storage, attempt: SignInAttempt = ATTEMPT, *, right: bool = False, later: float = 0) -> bool:
-    """Whether a password got as far as being looked at."""
+    """Whether a password got as far as being checked."""
     try:
         with attempting(storage, attempt, NOW + timedelta(seconds=later)):
             if not right:
@@ -104,13 +105,13 @@ def gateway(settings: Settings, storage: Storage) -> Iterator[httpx.Client]:
 
 
 def entered(client: httpx.Client, address: str, password: str = PASSWORD, login: str = "engineer") -> int:
-    """What a sign-in is answered, in a browser without any cookie but those of this client."""
+    """Status of a sign-in, in a browser without any cookie but those of this client."""
     data, headers = {"login": login, "password": password}, {"X-Forwarded-For": address}
     return client.post("/sign-in", data=data, headers=headers).status_code
 
 
 def guess(client: httpx.Client, address: str, times: int = LOGIN_LIMIT + 1) -> int:
-    """What the last of some wrong guesses is answered; the browser keeps no cookie."""
+    """Status of the last of some wrong guesses; the browser keeps no cookie."""
     with httpx.Client(base_url=client.base_url) as other:
         return [entered(other, address, f"guess {k} of many") for k in range(times)][-1]
 
@@ -145,7 +146,7 @@ def test_what_a_browser_keeps_opens_nothing_and_is_of_one_account_and_password(g
 
 
 def guess_as(client: httpx.Client, login: str, address: str) -> int:
-    """What a right password is answered from an address in a browser without cookies."""
+    """Status of a sign-in with the right password from an address, in a browser without cookies."""
     with httpx.Client(base_url=client.base_url) as other:
         return entered(other, address, login=login)
 

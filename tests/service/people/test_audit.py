@@ -24,7 +24,7 @@ def broken(storage: Storage) -> int | None:
 
 
 def tampered(storage: Storage, statement: str) -> None:
-    """As somebody would who may do everything to the database."""
+    """Executes a statement as somebody would who may do everything to the database."""
     with storage.database.engine.begin() as connection:
         _unguard(connection)
         connection.execute(text(statement))

@@ -33,7 +33,7 @@ def staff(storage: Storage) -> Staff:
 
 
 def admin_headers(storage: Storage, login: str) -> dict[str, str]:
-    """Of a new token that may do everything; it was used already, so that showing it writes nothing."""
+    """Headers of a new token that may do everything; it was used already, so that showing it writes nothing."""
     token, secret = make_token(storage, login, "bench", Role.ADMIN, NOW, lifetime=timedelta(days=1), who="test")
     with storage.database.writing() as store:
         Tokens(store).used(token.id, NOW)

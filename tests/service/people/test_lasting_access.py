@@ -1,5 +1,6 @@
-"""What opens the service ends when it should: tokens make nothing that outlives them, another password ends what the
-old one opened, and what was ended stays so."""
+"""Access ends when it should: tokens make nothing that outlives them, another password ends access by the old one, and
+ended access stays so.
+"""
 
 import re
 from collections.abc import Iterator
@@ -49,7 +50,7 @@ def new_token(http: httpx.Client, proof: str) -> tuple[int, dict[str, str]]:
 
 
 def role_of(http: httpx.Client, headers: dict[str, str]) -> int:
-    """What a token is answered, whoever the browser is."""
+    """Status of a request with a token, whoever the browser is."""
     return httpx.get(f"{http.base_url}{API}/units", headers=headers).status_code
 
 

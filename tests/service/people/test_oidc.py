@@ -58,7 +58,7 @@ def http(known: Settings, staff: Staff) -> Iterator[httpx.Client]:
 
 
 def sent_there(http: httpx.Client, next: str = "/flags") -> str:
-    """Where the provider sends the browser back to, once it was sent there."""
+    """Address that the provider sends the browser back to, once it was sent there."""
     began = http.get("/oidc/start", params={"next": next})
     assert began.status_code == 303, began.text
     return httpx.get(began.headers["location"]).headers["location"]
@@ -175,7 +175,7 @@ def test_a_token_of_a_key_that_was_taken_back_opens_nothing(http: httpx.Client, 
 
 
 def changed(address: str, **query: str | None) -> str:
-    """The same way back with something else in it."""
+    """The way back with something else in its query."""
     parts = urlsplit(address)
     asked = {k: v[0] for k, v in parse_qs(parts.query).items()} | query
     return str(httpx.URL(parts._replace(query="").geturl(), params={k: v for k, v in asked.items() if v is not None}))

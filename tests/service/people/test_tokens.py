@@ -25,7 +25,7 @@ def staff(storage: Storage) -> Staff:
 
 
 def opens(settings: Settings, secret: str, later: timedelta = timedelta(0)) -> int:
-    """What a token is answered, some time after."""
+    """Status of a request with a token, some time later."""
     with http_client(create_app(settings, clock=lambda: NOW + later)) as client:
         return client.get("/api/v1/units", headers={"Authorization": f"Bearer {secret}"}).status_code
 

@@ -1,4 +1,4 @@
-"""What a session would have found, in people's measures, and what it cannot see."""
+"""Detection limits of a session in people's measures, and the causes it cannot see."""
 
 from estimator.causes import CATALOGUE
 from estimator.diagnosis.results import Limit

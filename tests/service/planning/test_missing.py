@@ -1,4 +1,4 @@
-"""What a session still lacks while it is measured, by the API; nothing is stored."""
+"""The rows that a session under way still lacks, by the API; nothing is stored."""
 
 import httpx
 
@@ -9,7 +9,7 @@ ADDRESS = "/api/v1/plan/missing"
 
 
 def so_far(document: Document, count: int) -> Document:
-    """Its first rows."""
+    """The document with its first rows alone."""
     return document | {"table": {name: column[:count] for name, column in document["table"].items()}}
 
 

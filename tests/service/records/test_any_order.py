@@ -1,4 +1,4 @@
-"""What is known of a unit is a function of its accepted records, in whatever order and by whatever detour they came."""
+"""The state of a unit is a function of its accepted records, in whatever order and by whatever detour they came."""
 
 import json
 from collections.abc import Callable
@@ -76,8 +76,9 @@ class Crew:
         record_service(self.storage, UNITS[0], SERVICE, NOW)
 
     def mends(self) -> None:
-        """Everything that was taken back is accepted again, and one reference before the service is the one that all
-        agree on."""
+        """Accepts again everything that was taken back, and chooses one reference before the service that all agree
+        on.
+        """
         with self.storage.database.reading() as store:
             gone = [s.id for s in Sessions(store).of_unit(UNITS[0]) if s.state is RecordState.WITHDRAWN]
         for id in gone:
@@ -92,7 +93,7 @@ ORDERS = st.permutations([*MOVED, "service"]).flatmap(
 
 
 def known(databases: Databases, folder: Path, order: Any) -> dict[str, Any]:
-    """What is known after an order of arrivals."""
+    """The state after an order of arrivals."""
     with ExitStack() as stack:
         url = databases.migrated()
         stack.callback(databases.drop, url)

@@ -63,13 +63,15 @@ def said(client: httpx.Client, id: str) -> tuple[bool, list[str]]:
 
 
 def waits(client: httpx.Client) -> int:
-    """How many sessions are to be judged or weighed."""
+    """Number of sessions that are to be judged or weighed."""
     return int(client.get(f"/api/v1/units/{UNIT}/derivation").json()["waiting"])
 
 
 @pytest.fixture
 def working(settings_holding: SettingsHolding) -> Settings:
-    """Of a service with workers, that holds a reference and a session out of tolerance for a jump that is named."""
+    """Settings of a service with workers, that holds a reference and a session out of tolerance for a jump that is
+    named.
+    """
     return settings_holding(*MISTAKEN, diagnosed=True).model_copy(update={"diagnosis_workers": 1})
 
 

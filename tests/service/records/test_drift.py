@@ -1,4 +1,4 @@
-"""From uploads to what drifts or has jumped: flags of their own, what is needed next, and what a type teaches."""
+"""Drifts and jumps from uploads on: flags of their own, what is needed next, and what a type teaches."""
 
 from datetime import UTC, datetime, timedelta
 

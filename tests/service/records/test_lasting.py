@@ -1,5 +1,6 @@
-"""What a group of sessions shows is accepted into a model: every session it concerns is computed again, and what moved
-is kept."""
+"""An effect that a group of sessions shows is accepted into a model: every session it concerns is computed again, and
+the changes are kept.
+"""
 
 import json
 from dataclasses import replace
@@ -50,7 +51,7 @@ def group(storage: Storage, level: Level = Level.UNIT, name: str = UNIT) -> Grou
 
 
 def scale(found: Calibration) -> float:
-    """Of A2, which takes most of a cubic term for its own."""
+    """Scale of A2, which takes most of a cubic term for its own."""
     assert found.sensors[1].scale.value is not None
     return found.sensors[1].scale.value
 
@@ -68,7 +69,7 @@ def brought(storage: Storage, revision: int) -> tuple[Recomputation, ...]:
 
 
 def four_sessions(storage: Storage) -> None:
-    """Of a unit, and one of another without the effect; the answer is made."""
+    """Stores four sessions of a unit, and one of another without the effect; the group's answer is made."""
     for content in (*GROUP, cubic_session(40, unit="BA-018", cubic=0.0)):
         upload(storage, content, "a.json", NOW)
     refresh_group(storage, group(storage), NOW)

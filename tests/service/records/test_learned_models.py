@@ -25,7 +25,7 @@ def refreshed(storage: Storage) -> None:
 
 
 def news(storage: Storage) -> list[str]:
-    """What the unit's sessions together show that is in no model."""
+    """Effects that the unit's sessions show together and no model holds."""
     with storage.database.reading() as store:
         return [one.own for one in Announcements(store).all(0, 10).found if one.group.level is Level.UNIT]
 

@@ -1,4 +1,4 @@
-"""What takes long is not called in a write transaction, and a place to read is taken before the turn to write."""
+"""Long work is not done in a write transaction, and a place to read is taken before the turn to write."""
 
 from collections.abc import Callable
 from typing import Any

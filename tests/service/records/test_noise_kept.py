@@ -1,4 +1,4 @@
-"""What the rests of a raw log say of noise is kept beside bias and scale, and judged by nobody."""
+"""Noise from the rests of a raw log is kept beside bias and scale, and judged by nobody."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""What a service that is entered late would change is shown before it is recorded, and is what then comes."""
+"""The effect of a service that is entered late is shown before it is recorded, and is the one that then comes."""
 
 from datetime import UTC, datetime
 from typing import Any
@@ -37,17 +37,17 @@ def failed_and_one_more(storage: Storage) -> None:
 
 @pytest.fixture
 def storage(filled: Filled) -> Storage:
-    """That unit."""
+    """The stores of that unit."""
     return filled(failed_and_one_more)
 
 
 def way(storage: Storage) -> Deriving:
-    """How its records are derived."""
+    """Options of the derivation of its records."""
     return Deriving(storage.files, 2.0, NOW)
 
 
 def state(storage: Storage) -> tuple[Any, ...]:
-    """Everything that a preview must leave alone."""
+    """The records that a preview must leave alone."""
     with storage.database.reading() as store:
         unit = Units(store).key("BA-017")
         sessions = Sessions(store).of_unit("BA-017")

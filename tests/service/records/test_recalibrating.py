@@ -52,7 +52,7 @@ def accept(storage: Storage, session: str, scope: Scope = Scope.UNIT_TYPE, subje
 
 
 def revisions(storage: Storage, ids: list[str]) -> set[tuple[int, ...]]:
-    """That sessions were computed under."""
+    """Revisions that sessions were computed under."""
     with storage.database.reading() as store:
         return {Calibrations(store).revisions(id) for id in ids}
 
@@ -108,7 +108,7 @@ def test_a_worker_that_is_killed_costs_nothing(storage: Storage, settings: Setti
 
 
 def kill_one_worker() -> int:
-    """As when the machine has no memory left; both are at a unit."""
+    """Kills a worker, as happens when the machine has no memory left; both are at a unit."""
     children = psutil.Process().children(recursive=True)
     own = [child for child in children if "spawn_main" in " ".join(child.cmdline())]
     os.kill(own[-1].pid, signal.SIGKILL)

@@ -1,4 +1,4 @@
-"""What uploads and recomputing ask the database, whatever the length of a unit's history; on both engines."""
+"""Statements of uploads and recomputing to the database, whatever the length of a unit's history; on both engines."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -14,11 +14,11 @@ from tests.service.made_sessions import session_bytes
 
 BY = {"by": "K. Ito", "why": "another look"}
 MOVED = session_bytes(seed=2, month=2, a3_moved=90.0)
-"""Beside `REFERENCE` its A3 has another zero; by itself there is nothing to say of it."""
+"""A session whose A3 has another zero than in `REFERENCE`; by itself there is nothing to report."""
 
 
 def in_another_unit(content: bytes) -> bytes:
-    """The same session with readings in mV for V, so that it is questioned."""
+    """The session with readings in mV for V, so that it is questioned."""
     document = json.loads(content)
     names = [name for name in document["table"] if name.startswith("A")]
     document["table"] |= {name: [1e3 * x for x in document["table"][name]] for name in names}
@@ -45,12 +45,12 @@ def sent(client: httpx.Client, content: bytes, **params: str) -> str:
 
 
 def done(client: httpx.Client, id: str, what: str, **more: Any) -> None:
-    """Something that an engineer does to a session."""
+    """Does to a session what an engineer may do."""
     client.post(f"/api/v1/sessions/{id}/{what}", json=BY | more).raise_for_status()
 
 
 def looked_at(client: httpx.Client, id: str) -> tuple[Any, Any]:
-    """What the diagnosis of a session names, and the reservations of its verdict."""
+    """Findings of a session's diagnosis, and the reservations of its verdict."""
     found = client.get(f"/api/v1/sessions/{id}/diagnosis").json()
     named = [(one["cause"], one["sensors"], one["amplitude"]) for one in found["findings"]]
     return named, client.get(f"/api/v1/sessions/{id}").json()["reservations"]
@@ -82,7 +82,9 @@ def test_what_stands_for_an_earlier_session_is_not_compared_with_it(holding: Hol
 
 @pytest.mark.slow
 def test_a_questioned_session_is_looked_at_again_once_it_is_accepted(holding: Holding) -> None:
-    """Of three sensors: beside the earlier session all of it seems new, and every sensor more costs seconds."""
+    """The sessions have three sensors: beside the earlier one all of it seems new, and every sensor more costs
+    seconds.
+    """
     found = []
     for is_looked_at in (True, False):
         client = holding(session_bytes(month=1, m=3))

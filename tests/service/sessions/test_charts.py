@@ -1,4 +1,4 @@
-"""What charts are given to draw."""
+"""Data that charts draw."""
 
 from dataclasses import replace
 from datetime import timedelta

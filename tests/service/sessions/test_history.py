@@ -1,4 +1,4 @@
-"""What a unit's page draws: its newest sessions, whole; and what its tables hold."""
+"""Points that a unit's page draws: of its newest sessions, whole; and the content of its tables."""
 
 from datetime import UTC, datetime
 
@@ -18,7 +18,7 @@ from tests.service.stands.test_stands import measured_on
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 POINTS = 24
-"""Of one session with six sensors."""
+"""Points of one session with six sensors."""
 
 
 def measure(storage: Storage) -> None:

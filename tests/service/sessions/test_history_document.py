@@ -1,4 +1,4 @@
-"""What histories tell of their type is read as it was written, and so is what was written before tails were told of."""
+"""Documents of histories are read as they were written, also those from before tails were stored."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""What all sensors did together, in plain sentences."""
+"""Common motion of all sensors in plain sentences."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""What became noisier, in words."""
+"""Growth of noise in words."""
 
 from dataclasses import replace
 

@@ -20,7 +20,7 @@ from tests.service.papers.documents import text_of
 UNIT = "BA-017"
 HTML = {"Accept": "text/html"}
 EARLY = "2026-03-01T01:30:00+03:00"
-"""In UTC it is the day before."""
+"""Start of a session that in UTC is on the day before."""
 MOMENT, DAY = datetime(2026, 2, 28, 22, 30, tzinfo=UTC), "1 Mar 2026"
 OTHER_DAY = re.compile(r"2026-02-28|20260228|\b28 Feb 2026")
 

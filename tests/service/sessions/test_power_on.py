@@ -1,4 +1,4 @@
-"""When the unit was switched on: kept with its session, shown, certified, and asked for the next one anew."""
+"""The moment of power-on: kept with its session, shown, certified, and asked for the next one anew."""
 
 import httpx
 import pytest

@@ -53,7 +53,7 @@ def everything_of(client: httpx.Client) -> Iterator[str]:
 
 
 def refused(client: httpx.Client) -> dict[str, int]:
-    """What does not answer 200."""
+    """Status of every address that does not answer 200."""
     found = {path: client.get(path, headers=HTML if "/api/" not in path else {}) for path in everything_of(client)}
     return {path: answer.status_code for path, answer in found.items() if answer.status_code != 200}
 

@@ -1,4 +1,4 @@
-"""Which sessions a list holds, in which order, and how it is read on from one of them."""
+"""Sessions that a list holds, their order, and reading on from one of them."""
 
 from dataclasses import replace
 from datetime import UTC, datetime

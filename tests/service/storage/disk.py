@@ -25,10 +25,10 @@ class Call:
 
     name: str
     path: str
-    """What it works on."""
+    """Path that it works on."""
     data: bytes = b""
     number: int = 0
-    """Where it writes, or the new length."""
+    """Position of the write, or the new length."""
     other: str = ""
     """The new name."""
 
@@ -45,7 +45,7 @@ class Disk:
 
     @classmethod
     def of(cls, folder: Path) -> "Disk":
-        """What is there before, all of it synced."""
+        """The disk with the content of a folder, all of it synced."""
         paths = sorted(folder.rglob("*"))
         names = {str(path): number for number, path in enumerate(paths)}
         content = {names[str(path)]: path.read_bytes() for path in paths if path.is_file()}
@@ -92,7 +92,7 @@ class Disk:
                     del self.synced_names[name]
 
     def left(self, *, names_kept: bool) -> Left:
-        """What is there after the power was cut; with ``names_kept`` the names got to the disk, the bytes did not."""
+        """Content after the power was cut; with ``names_kept`` the names got to the disk, the bytes did not."""
         names = self.names if names_kept else self.synced_names
         return tuple(
             (name, self.synced_bytes.get(number, b"") if number in self.written else None)

@@ -1,4 +1,4 @@
-"""Whether a service lost nothing and holds nothing by halves, looked at in its database and its files."""
+"""Tests in database and files whether a service lost nothing and holds nothing by halves."""
 
 from collections.abc import Collection, Iterator
 from hashlib import sha256
@@ -14,13 +14,13 @@ from service.storage.audit import AuditRow
 from tests.service.storage.whole import files
 
 SENSORS = 4
-"""Of the sessions that are looked at: the fewest that say enough, so that much is uploaded."""
+"""Sensors of the sessions that are checked: the fewest that say enough, so that much is uploaded."""
 WHOLE: dict[Any, int] = {CalibrationRow: 1, ParameterRow: 4 * SENSORS, DecisionRow: 4 * SENSORS}
 """Rows that such a session of `session_bytes` has: one calibration, and four parameters a sensor."""
 
 
 def faults(settings: Settings, acknowledged: Collection[bytes], sent: Collection[bytes]) -> list[str]:
-    """Everything that is not as it must be after an interruption; none is what is wanted.
+    """Faults in the stored data after an interruption; none is wanted.
 
     ``acknowledged`` are uploads whose answer was seen, ``sent`` all that were ever sent.
     """
@@ -55,7 +55,7 @@ def _faults(
 
 
 def _halves(connection: Connection, id: str) -> Iterator[str]:
-    """What is missing of one session, or there twice."""
+    """Parts of one session that are missing, or there twice."""
     for table, wanted in WHOLE.items():
         rows = connection.scalar(select(func.count()).select_from(table).where(table.session_id == id))
         if rows != wanted:

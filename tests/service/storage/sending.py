@@ -20,12 +20,12 @@ Way = Callable[[Storage, bytes, datetime], None]
 
 
 def as_bytes(storage: Storage, content: bytes, now: datetime) -> None:
-    """As a short file comes."""
+    """Sends a file as a short one comes."""
     upload(storage, content, "a.json", now)
 
 
 def landed(storage: Storage, content: bytes, now: datetime) -> None:
-    """As a long one comes, in two parts."""
+    """Sends a file as a long one comes, in two parts."""
     with storage.files.arriving() as place:
         landing, half = place.new(), len(content) // 2
         for part in (content[:half], content[half:]):
@@ -35,7 +35,7 @@ def landed(storage: Storage, content: bytes, now: datetime) -> None:
 
 
 def by_a_job(storage: Storage, content: bytes, now: datetime) -> None:
-    """As a long one whose sender does not wait: it is acknowledged before it is read."""
+    """Sends a long file whose sender does not wait: it is acknowledged before it is read."""
     with storage.files.arriving() as place:
         landing = place.new()
         landing.take(content)
@@ -44,7 +44,7 @@ def by_a_job(storage: Storage, content: bytes, now: datetime) -> None:
 
 
 def go_on(storage: Storage, now: datetime) -> None:
-    """What a service does that is started again: jobs that are open are taken up."""
+    """Takes up open jobs, as a service does that is started again."""
     with storage.database.reading() as store:
         waiting = WorkQueue(store, WorkKind.UPLOAD).waiting(now + LEASE, 100)
     for id in waiting:

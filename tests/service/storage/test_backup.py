@@ -62,12 +62,12 @@ def full(settings_filled: SettingsFilled) -> Settings:
 
 
 across = pytest.mark.parametrize(("databases", "other"), [ENGINES, ENGINES[::-1]], indirect=True)
-"""From either engine into the other."""
+"""Runs from either engine into the other."""
 
 
 @pytest.fixture
 def other(request: pytest.FixtureRequest) -> Databases:
-    """Of the engine to restore into."""
+    """Databases of the engine to restore into."""
     found: Databases = request.getfixturevalue(request.param)
     return found
 
@@ -269,7 +269,7 @@ for line in sys.stdin:
 
 @pytest.fixture(scope="module")
 def killed_at() -> Iterator[Killed]:
-    """Whether a backup or a restore is killed at a call, or done before."""
+    """Function that tells whether a backup or a restore is killed at a call, or done before."""
     command = [sys.executable, "-c", FORKS]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as forks:
         asked, told = forks.stdin, forks.stdout
@@ -286,7 +286,7 @@ def killed_at() -> Iterator[Killed]:
 
 
 CALLS = (2, 1000, 1950)
-"""At the beginning, on the way, near the end: restoring so little takes 1971 calls, writing it 2390."""
+"""Calls at the beginning, on the way and near the end: restoring so little takes 1971 calls, writing it 2390."""
 
 
 @pytest.mark.slow

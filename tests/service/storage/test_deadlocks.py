@@ -19,7 +19,7 @@ Change = tuple[str, str, object]
 
 
 def changes(number: int, ids: list[str], flags: list[int], kind: str) -> Iterator[Change]:
-    """What one client asks for, one thing after another: method, path and body."""
+    """Requests of one client, one after another: method, path and body."""
     chance = Random(number)
     for step in range(EACH):
         unit, session = chance.choice(UNITS), chance.choice(ids)

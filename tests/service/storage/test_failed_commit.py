@@ -13,12 +13,12 @@ LATE = {
     "sqlite": ["PRAGMA defer_foreign_keys=ON"],
     "postgresql": ["ALTER TABLE note_withdrawals ALTER CONSTRAINT fk_note_withdrawals_note_id INITIALLY DEFERRED"],
 }
-"""How each engine is made to look at references only when the transaction is committed."""
+"""Statements that make each engine check references only when the transaction is committed."""
 DEFERRABLE = "ALTER TABLE note_withdrawals ALTER CONSTRAINT fk_note_withdrawals_note_id DEFERRABLE"
 
 
 def refer_to_nothing(engine: Engine) -> None:
-    """What is refused when it is committed."""
+    """Writes a row that is refused when it is committed."""
     with engine.begin() as connection:
         for statement in LATE[engine.name]:
             connection.execute(text(statement))

@@ -26,10 +26,10 @@ from tests.service.storage.sending import Way, as_bytes, landed
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 CALLS = ("open", "mkdir", "fsync", "replace", "unlink")
-"""By which the folder of files is changed."""
+"""Calls that change the folder of files."""
 
 STEP = 4
-"""Of PostgreSQL every fourth statement fails: they are the same as SQLite's, of which each does."""
+"""Every fourth statement of PostgreSQL fails: they are the same as SQLite's, of which each does."""
 
 
 @dataclass
@@ -39,7 +39,7 @@ class Failing:
     left: int
 
     def due(self) -> bool:
-        """Whether it is this one."""
+        """Whether this call is the one that fails."""
         self.left -= 1
         return self.left == 0
 
@@ -50,7 +50,7 @@ class Failing:
 
 
 def refused(_: object = None) -> OperationalError:
-    """What a driver says whose server is gone."""
+    """The error of a driver whose server is gone."""
     return OperationalError("", {}, Exception("the server is gone"))
 
 
@@ -145,7 +145,7 @@ def test_after_every_single_failure_an_upload_is_whole_or_not_there_and_is_store
 
 @contextmanager
 def no_file_longer_than(size: int) -> Iterator[None]:
-    """As on a disk that fills up."""
+    """Limits the size of files, as a disk does that fills up."""
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, limits[1]))
     try:

@@ -15,7 +15,7 @@ from service.storage.folders import LOCK_DELAY
 
 
 def half_written(files: Files, *, age: float) -> Path:
-    """What a process leaves that dies while it writes."""
+    """A part file as a process leaves it that dies while it writes."""
     part = files.path(files.keep(b"x")).with_name(".part-1")
     part.write_bytes(b"half")
     then = part.stat().st_mtime - age

@@ -67,7 +67,7 @@ def golden(name: str) -> Any:
 
 
 def within(less: Any, more: Any, path: str = "") -> None:
-    """What an earlier version stated is said again, number for number."""
+    """Asserts that everything an earlier version stated is stated again, number for number."""
     if isinstance(less, dict):
         for key in set(less) & set(more) if not path else less:
             within(less[key], more[key], f"{path}.{key}")

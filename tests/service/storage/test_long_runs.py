@@ -1,4 +1,4 @@
-"""What proves durability over hours works at its smallest: a kill of everything, and a few uploads."""
+"""The proofs of durability over hours work at their smallest: a kill of everything, and a few uploads."""
 
 from pathlib import Path
 

@@ -172,7 +172,7 @@ def test_jobs_messages_and_recomputations_wait_across_a_change_of_the_schema(sto
 
 
 def _work(storage: Storage, now: datetime) -> tuple[list[tuple[str, ...]], list[Job], tuple[Delivery, ...]]:
-    """What waits in the queue after a quarter of an hour, with the records of it."""
+    """Work that waits in the queue after a quarter of an hour, with its records."""
     kinds, later = (WorkKind.RECOMPUTATION, WorkKind.JOB, WorkKind.MESSAGE), now + timedelta(minutes=15)
     with storage.database.reading() as store:
         waiting = [WorkQueue(store, kind).waiting(later, 10) for kind in kinds]

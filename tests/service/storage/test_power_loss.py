@@ -52,13 +52,13 @@ class Recorded:
 
     @property
     def answered(self) -> int:
-        """After how many calls it is acknowledged."""
+        """Number of calls after which it is acknowledged."""
         return next(n for n, call in enumerate(self.calls, 1) if call.data == self.way.encode())
 
 
 @pytest.fixture(scope="module")
 def every(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Recorded]:
-    """By way the disk before an upload, and the calls of the upload: one process does all of them."""
+    """The disk before an upload and the calls of the upload, by way: one process does all of them."""
     if shutil.which("strace") is None:
         pytest.skip("strace is not installed: the calls of an upload cannot be recorded")
     folder = tmp_path_factory.mktemp("power")

@@ -1,4 +1,4 @@
-"""Those who write come in the order in which they came, and nobody waits for ever."""
+"""Writers come in the order in which they asked, and nobody waits for ever."""
 
 from threading import Event, Thread
 from time import sleep

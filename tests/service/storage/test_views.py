@@ -29,7 +29,7 @@ def measured(settings_holding: SettingsHolding) -> Settings:
 
 
 def rows(url: str, query: str) -> Rows:
-    """What a view shows whoever is connected to the database."""
+    """Rows that a view shows to whoever is connected to the database."""
     engine = open_engine(url)
     with engine.connect() as connection:
         found = [dict(row._mapping) for row in connection.execute(text(query))]
@@ -53,7 +53,7 @@ def plain(value: Any, name: str) -> Any:
 
 
 def read(settings: Settings, path: str) -> Any:
-    """What the API answers."""
+    """Answer of the API."""
     with http_client(create_app(settings)) as client:
         return client.get(f"/api/v1/{path}").json()
 

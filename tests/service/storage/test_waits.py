@@ -31,7 +31,7 @@ LONGEST = LONG / 2
 
 @contextmanager
 def given_up() -> Iterator[None]:
-    """What is done inside ends as away, and soon."""
+    """Asserts that the work inside ends as away, and soon."""
     began = monotonic()
     with pytest.raises(AwayError):
         yield

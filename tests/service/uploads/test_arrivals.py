@@ -32,7 +32,7 @@ def stored(filled: Filled) -> Storage:
 
 
 def letter(arrival: Arrival) -> str:
-    """Of the file's name."""
+    """First letter of the file's name."""
     known = arrival.session or arrival.refusal
     assert known is not None
     return known.filename[0]

@@ -1,4 +1,4 @@
-"""What a file may hold and how many are taken at once: limits, each with its answer."""
+"""Limits on the content of a file and on the number taken at once, each with its answer."""
 
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack

@@ -13,7 +13,7 @@ NAMES = ("../../../escaped.json", "..\\..\\escaped.json", "/tmp/escaped.json", "
 
 
 def files_of(settings: Settings) -> set[str]:
-    """Of everything that lies where uploads are kept, and beside it."""
+    """Names of all files in the folder of uploads, and beside it."""
     return {path.name for path in Path(settings.data_folder).rglob("*") if path.is_file()}
 
 

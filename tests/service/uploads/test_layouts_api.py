@@ -22,7 +22,7 @@ def previewed(client: httpx.Client, content: bytes = TABLE, mapping: Any = None,
 
 
 def whole_mapping(client: httpx.Client, **facts: Any) -> dict[str, Any]:
-    """As it is proposed, and what the table does not say."""
+    """The mapping as it is proposed, with what the table does not state."""
     mapping = previewed(client)["mapping"]
     return {**mapping, "session": tables.facts_of(tables.own_document(**facts))}
 

@@ -22,7 +22,7 @@ SAID = {
     "fact.stand.id": "S1", "fact.stand.alpha_deg": "40", "fact.site.latitude_deg": "55,81", "arrangement": "cone",
     **{f"sensor.A{k}.{key}": value for k in (1, 2, 3) for key, value in (("scale", "0,12"), ("unit", "V"))},
 }  # fmt: skip
-"""What somebody writes into the form."""
+"""Entries of the form."""
 
 
 def shown(page: str) -> dict[str, str]:
@@ -104,13 +104,13 @@ def test_what_title_rows_state_stands_in_the_form(client: httpx.Client) -> None:
 
 
 def faults(page: str) -> dict[str, str]:
-    """What is wrong, by the label of its field."""
+    """Faults by the label of their field."""
     rows = re.findall(r"<tr><td>([^<]*)</td><td[^>]*>[^<]*</td><td>([^<]*)</td></tr>", page)
     return {unescape(label): unescape(said) for label, said in rows}
 
 
 def refused(client: httpx.Client, **changes: str) -> dict[str, str]:
-    """What is wrong with the form after these changes."""
+    """Faults of the form after these changes."""
     page = sent(client, shown(first_page(client)), **{**SAID, **changes, "do": "look"})
     assert (page.status_code, 'value="store"' in page.text) == (200, False)
     return faults(page.text)

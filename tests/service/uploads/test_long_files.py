@@ -71,7 +71,7 @@ def waiting(storage: Storage) -> list[Path]:
 
 
 def uploads(storage: Storage, settings: Settings) -> Callable[[], bool]:
-    """What works on the next of them; whether there was one."""
+    """Function that works on the next upload; it returns whether there was one."""
     own = Worker(settings, storage, lambda: NOW, Metrics(), Bell())
     return lambda: work_next(own, upload_maker(own), Event(), UPLOADS)
 

@@ -32,7 +32,7 @@ def measured(serial: str, *, truth: int, seed: int = 1, month: int = 3, **change
 
 
 def sent(client: httpx.Client, content: bytes) -> dict[str, Any]:
-    """What an upload is answered."""
+    """Answer to an upload."""
     answer = client.post(API, content=content)
     assert answer.status_code == 201, answer.text
     found: dict[str, Any] = answer.json()
@@ -51,7 +51,7 @@ def members(client: httpx.Client, level: str, name: str) -> int:
 
 
 def renamed(content: bytes, **changes: Any) -> bytes:
-    """The same readings with other words beside them."""
+    """The session with the same readings and other words beside them."""
     return json.dumps(json.loads(content) | changes).encode()
 
 

@@ -1,4 +1,4 @@
-"""What cannot be as its file says is questioned, the likely slip is named, and an engineer may accept it still."""
+"""A file that cannot be right is questioned, the likely slip is named, and an engineer may accept it still."""
 
 import json
 from collections.abc import Callable
@@ -71,7 +71,7 @@ def noisy(document: dict[str, Any]) -> None:
 
 
 SWAPPED = accelerometer_block(6, seed=3, unit="BA-017", sensors=true_sensors(6, bias=1e-3, tilt=1e-4), positions=24)
-"""With both runs under one another's name."""
+"""A session with both runs under one another's name."""
 SLIPS: dict[str, tuple[Slip, str]] = {
     "mV for V": (times(1000.0), "such as mV instead of V"),
     "one channel in mV": (times(1000.0, A1), "The scale factor of A1 is 1"),

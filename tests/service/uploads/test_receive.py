@@ -153,7 +153,7 @@ def test_a_reference_that_shows_everything_says_no_more(storage: Storage) -> Non
 
 
 def reception(storage: Storage, rung: list[None]) -> Reception:
-    """What the service receives with; ``rung`` collects how often it rang for diagnoses."""
+    """Reception of the service; ``rung`` collects how often it rang for diagnoses."""
     return Reception(storage, 2.0, Metrics(), lambda: rung.append(None))
 
 

@@ -9,7 +9,7 @@ from tests.service.made_sessions import session_bytes
 
 TEMPLATE = "/api/v1/session-template"
 SQLITE = pytest.mark.parametrize("databases", ["sqlite"], indirect=True)
-"""Where no database decides."""
+"""Runs on one engine, where no database decides."""
 RUSSIAN = ["сеанс", "показания", "пример"]
 
 

@@ -1,4 +1,4 @@
-"""What became of uploads, for programs."""
+"""Outcomes of uploads, for programs."""
 
 import httpx
 import pytest

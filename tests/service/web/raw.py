@@ -10,7 +10,7 @@ from tests.patience import LONG
 
 @dataclass(frozen=True)
 class Answer:
-    """What came back until the connection was closed."""
+    """Bytes that came back until the connection was closed."""
 
     status: int
     head: str
@@ -31,7 +31,7 @@ def head(method: str, path: str, **headers: str) -> bytes:
 
 
 def received(connection: socket.socket) -> bytes:
-    """Everything until the other side closes, whether or not it has read all that was sent."""
+    """All bytes until the other side closes, whether or not it has read all that was sent."""
     parts = []
     with suppress(ConnectionResetError):
         while part := connection.recv(65536):

@@ -1,4 +1,4 @@
-"""What is refused is refused in words, with the right headers, to programs and to people."""
+"""Refusals come in words, with the right headers, to programs and to people."""
 
 from pathlib import Path
 

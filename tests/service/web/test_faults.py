@@ -1,4 +1,4 @@
-"""What pydantic finds is a message with its parts, so that it can be said in any language."""
+"""Faults that pydantic finds are messages with their parts, so that they can be translated."""
 
 from enum import Enum
 from typing import Annotated, Literal
@@ -17,7 +17,7 @@ class Kind(Enum):
 
 
 class Asked(BaseModel):
-    """Of every kind that requests have."""
+    """A request with a field of every kind."""
 
     number: Annotated[int, Field(gt=1, lt=9)] = 2
     least: Annotated[int, Field(ge=1, le=9)] = 2

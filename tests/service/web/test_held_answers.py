@@ -14,7 +14,7 @@ from service.kit.answer import Hidden, answer
 @answer
 @dataclass(frozen=True)
 class Reading:
-    """What an instrument showed."""
+    """A reading of an instrument."""
 
     secret: Hidden[str]
     """Told to nobody."""

@@ -1,4 +1,4 @@
-"""What those who run the service see of it: requests by their id, and a disk that is filling up."""
+"""The service as operators see it: requests by their id, and a disk that is filling up."""
 
 import httpx
 import pytest

@@ -16,7 +16,7 @@ from tests.service.made_sessions import session_bytes
 from tests.serving import serving
 
 EXAMPLES = 2
-"""Of each call, where there is more time; docs/security/http.md has what thousands of requests came to."""
+"""Examples of each call, where there is more time; docs/security/http.md has the results of thousands of requests."""
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +29,7 @@ def address(request: pytest.FixtureRequest, stock_of: StockOf) -> Iterator[str]:
 
 @pytest.fixture(scope="module")
 def description(address: str) -> schemathesis.BaseSchema:
-    """What the service says of itself."""
+    """The service's description of itself."""
     return schemathesis.openapi.from_url(f"{address}/openapi.json", timeout=LONG)
 
 
@@ -56,7 +56,7 @@ def test_generated_requests_are_answered_as_described(
 
 
 def asking_for_more(operations: list[schemathesis.APIOperation]) -> Iterator[schemathesis.APIOperation]:
-    """Those with a body, or with a parameter that none before them has: what is declared once is broken once."""
+    """Operations with a body, or with a parameter that none before them has: one declaration is broken only once."""
     known: set[str] = set()
     for operation in operations:
         asked = {repr(parameter.definition) for parameter in operation.iter_parameters()}

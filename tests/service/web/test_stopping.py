@@ -39,7 +39,7 @@ def service(folder: Path, seconds: float, diagnosing: int = 0) -> Iterator[tuple
 
 
 def upload_head(content: bytes) -> bytes:
-    """Of an upload whose body is still to come."""
+    """Head of an upload whose body is still to come."""
     return head("POST", "/api/v1/sessions", Content_Length=str(len(content)))
 
 

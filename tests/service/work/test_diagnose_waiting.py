@@ -46,7 +46,7 @@ class Clock:
 
 @pytest.fixture
 def own(settings: Settings, storage: Storage) -> Worker:
-    """What makes diagnoses beside the requests."""
+    """Worker that makes diagnoses beside the requests."""
     return Worker(settings, storage, Clock(), Metrics(), Bell())
 
 

@@ -32,7 +32,7 @@ def send(client: httpx.Client, content: bytes) -> int:
 
 
 def dated_outlook(client: httpx.Client, unit: str) -> dict[str, Any]:
-    """Once it is worked out or has failed; each answer waits for it for a while."""
+    """The outlook once it is worked out or has failed; each answer waits for it for a while."""
     for _ in range(20):
         usable = client.get(f"/api/v1/units/{unit}/usable").json()
         if DATES_PENDING not in (*usable["reservations"], *usable["reasons"]):
@@ -42,7 +42,7 @@ def dated_outlook(client: httpx.Client, unit: str) -> dict[str, Any]:
 
 
 def put_histories(settings: Settings, evidence: bytes) -> None:
-    """What the first unit teaches its type, as a fault of the disk may leave it."""
+    """Overwrites the evidence of the first unit on its type, as a fault of the disk may do."""
     database = open_database(settings.database)
     with database.engine.begin() as connection:
         connection.execute(text("UPDATE histories SET evidence = :evidence"), {"evidence": evidence})

@@ -1,4 +1,4 @@
-"""What is still being examined is said, and the page follows by itself."""
+"""A page says that something is still being examined, and follows it by itself."""
 
 import re
 from datetime import UTC, datetime, timedelta

@@ -66,7 +66,7 @@ def killed(helper: Helper, now: datetime, still: KeepGoing) -> Failure | None:
 
 
 def tries(own: Worker, helper: Helper, kind: Kind) -> int:
-    """How often it is begun until nothing of it waits."""
+    """Number of times that the work is begun until nothing of it waits."""
     count = 0
     while work_next(own, lambda _, __, now, still: killed(helper, now, still), Event(), kind):
         count += 1

@@ -40,14 +40,14 @@ REPORT = NewJob(JobKind.REPORT, "K. Ito", form="xlsx", language="en")
 
 
 def three_units(settings: Settings) -> None:
-    """Of one session each."""
+    """Stores three units of one session each."""
     with stores(settings) as storage:
         for unit in ("B-1", "B-2", "B-3"):
             upload(storage, session_bytes(unit=unit), "a.json", NOW)
 
 
 def one_unit(storage: Storage) -> None:
-    """With two sessions."""
+    """Stores a unit with two sessions."""
     for content in GROUP[:2]:
         upload(storage, content, "a.json", NOW)
 
@@ -96,7 +96,7 @@ def read(storage: Storage, id: int) -> Job:
 
 
 def pieces(storage: Storage, id: int, count: int) -> Job:
-    """So many pieces of a job, one after another."""
+    """Does so many pieces of a job, one after another."""
     for _ in range(count):
         assert claim(storage, id) == 1
         work_piece(storage, id, NOW, 2.0)

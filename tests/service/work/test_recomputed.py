@@ -1,4 +1,4 @@
-"""What a session's page says of the model in force, and what is said when sessions were computed again."""
+"""The model in force on a session's page, and the message when sessions were computed again."""
 
 import httpx
 

@@ -1,4 +1,4 @@
-"""What a session would have found: an effect at its limit is found nineteen times of twenty."""
+"""Detection limits of a session: an effect at its limit is found nineteen times of twenty."""
 
 from dataclasses import replace
 
@@ -18,7 +18,7 @@ WHERE = scene(ACCELEROMETER, 0)
 
 
 def limits(where: Scene) -> dict[str, Limit]:
-    """By cause."""
+    """Limits by cause."""
     return {x.cause: x for x in diagnose(where.measured(1)).limits}
 
 

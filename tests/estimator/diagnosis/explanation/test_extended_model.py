@@ -29,7 +29,9 @@ def amplitude() -> float:
 
 
 def dense_sigmas() -> Array:
-    """(31,) of all parameters and the amplitude, SI, by numerical derivatives and the covariance of all readings."""
+    """(31,) sigmas of all parameters and the amplitude, SI, by numerical derivatives and the covariance of all
+    readings.
+    """
     world = WHERE.world
     case = Case("hidden", world.session, WHERE.noise)
     case.__dict__["truth"] = world.truth

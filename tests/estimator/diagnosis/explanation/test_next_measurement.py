@@ -1,4 +1,4 @@
-"""What the planner promises comes true: the proposed measurement, carried out, distinguishes the alternatives."""
+"""The planner's promises come true: the proposed measurement, carried out, distinguishes the alternatives."""
 
 from dataclasses import dataclass, replace
 
@@ -43,7 +43,7 @@ class Pair:
         return np.asarray(added * world.truth.scale)
 
     def amplitude(self) -> Array:
-        """Of a strength of twelve standard errors."""
+        """Amplitude of a strength of twelve standard errors."""
         world = World(self.session, truth_of(self.session))
         unit = np.array([1e-9])
         return unit * 12 / strength(self.effect(self.session, unit) / world.truth.scale, Scene(world, VOLTS))
@@ -69,7 +69,7 @@ def measured(pair: Pair, session: CalibrationSession, seed: int) -> Finding:
 
 
 def promise(finding: Finding, rival: str) -> Separation:
-    """What is said of the rival."""
+    """The separation stated for the rival."""
     return next(s for s in finding.separations if s.cause == rival)
 
 

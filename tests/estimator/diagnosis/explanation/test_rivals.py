@@ -1,4 +1,4 @@
-"""What stands among the alternatives of a name."""
+"""Alternatives of a name."""
 
 from dataclasses import replace
 

@@ -131,7 +131,7 @@ def test_of_sensors_that_fit_none_is_ruled_out(m: int) -> None:
 
 @pytest.mark.parametrize("second", ["yxz", "xyx"])
 def test_a_board_of_triads_is_halved_whether_or_not_its_halves_span_space(second: str) -> None:
-    """Of the board of eight IMUs every second sensor lies in a plane, whose shape is singular."""
+    """Every second sensor in a board of eight IMUs lies in a plane, whose shape is singular."""
     axes = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
     board = [TrueSensor(f"A{k + 1}", axes[letter], bias=0.05) for k, letter in enumerate(2 * ("xyz" + second))]
     document = arbitrary_orientations(sensors=board)

@@ -17,7 +17,7 @@ BLOCKS = pytest.mark.parametrize("block", [accelerometer_block, gyro_block])
 
 
 def dead_channels(session: CalibrationSession) -> tuple[str, ...]:
-    """Those set aside in every row."""
+    """Channels set aside in every row."""
     return tuple(a.sensor for a in calibrate(session).set_aside if a.last_row - a.row + 1 == len(session.readings))
 
 

@@ -1,4 +1,4 @@
-"""What moved since the history: the parameters of earlier sessions as one whitened reference."""
+"""Changes since the history: the parameters of earlier sessions as one whitened reference."""
 
 from dataclasses import replace
 

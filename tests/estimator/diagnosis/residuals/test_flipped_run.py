@@ -22,7 +22,7 @@ def test_a_small_turn_leaves_the_baseline_as_it_is() -> None:
 
 
 def test_a_large_turn_leaves_nothing_but_itself() -> None:
-    """To first order 8 % of the turn would be left: thousands of standard errors of 5 degrees."""
+    """A first-order model would leave 8 % of the turn: thousands of standard errors of 5 degrees."""
     found = with_its_flip(read_session(drawn(5.0).session))
     residuals = WhitenedResiduals.of(found)
     trace = residuals.trace(found.setting.through(FlipMisalignment().change(found.setting)))

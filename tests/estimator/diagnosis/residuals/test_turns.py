@@ -28,7 +28,7 @@ TURN = turned_by(5.0, 1)
 
 
 def matrix(vector: Array) -> Array:
-    """(3, 3) of a rotation vector, rad."""
+    """(3, 3) matrix of a rotation vector, rad."""
     return np.asarray(Rotation.from_rotvec(vector).as_matrix())
 
 

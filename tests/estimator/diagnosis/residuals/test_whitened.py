@@ -88,7 +88,9 @@ def test_a_direction_that_the_sensors_feel_alike_takes_one_reading_a_row() -> No
 
 
 def test_what_the_session_does_not_observe_takes_no_degree_of_freedom() -> None:
-    """At one elevation scale and bias of a sensor along the axis of rotation are one: rounding makes no second one."""
+    """Scale and bias of a sensor along the axis of rotation are one at a single elevation: rounding makes no second
+    one.
+    """
     baseline = at_truth(STAND[0])
     n = np.broadcast_to(baseline.setting.n[:1], baseline.setting.n.shape)
     still = replace(baseline, setting=replace(baseline.setting, n=n))

@@ -26,7 +26,7 @@ SENSOR = 1
 
 @cache
 def effect(identifier: str, sensor: int = SENSOR) -> Array:
-    """(R, m) what a cause adds to the readings at a strength of forty standard errors, V."""
+    """(R, m) change of the readings by a cause at a strength of forty standard errors, V."""
     world, k = WHERE.world, 1e-9 * np.ones(len(cause(identifier).units))
     for _ in range(3):
         added = ACTED[identifier](world, k, sensor, SHAPES.get(identifier, ())) - world.inputs(world.vectors())
@@ -64,5 +64,5 @@ def candidate(
 
 
 def names(state: SearchState) -> list[tuple[str, tuple[int, ...]]]:
-    """What was found: causes with their sensors, in order."""
+    """Causes that were found, with their sensors, in order."""
     return sorted(f.best.group for f in state.detections)

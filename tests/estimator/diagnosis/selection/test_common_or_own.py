@@ -75,7 +75,7 @@ def test_two_true_causes_of_two_sensors_keep_their_names() -> None:
 
 
 def test_nothing_of_a_course_shows_in_parity_space() -> None:
-    """But what noise leaves there: χ² within four of its standard deviations of its degrees of freedom."""
+    """Noise alone is left there: χ² within four of its standard deviations of its degrees of freedom."""
     begun = in_parity_space(start(OWN, swaying(2e-4)), size=False)
     z, freedom = begun.residuals.z, begun.residuals.freedom
     assert abs(z @ z - freedom) < 4 * np.sqrt(2 * freedom)

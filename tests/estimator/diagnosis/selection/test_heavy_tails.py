@@ -32,7 +32,7 @@ def errors(freedom: float) -> Array:
 
 
 def searched(identifier: str, course: Array, freedom: float = np.inf) -> SearchState:
-    """Before the search for a cause, a course (R,) of one sensor added, in standard errors."""
+    """The state before the search for a cause, with a course (R,) of one sensor added, in standard errors."""
     still = simulate(SCHEDULE, truth_of(SCHEDULE), np.random.default_rng(1), noise=np.full(6, 1e-4 * NOISE))
     off = errors(freedom) + course[:, None] * np.eye(6)[SENSOR]
     session = replace(with_readings(still, NOISE * off), standard_errors=np.full((ROWS, 6), NOISE))
@@ -40,7 +40,7 @@ def searched(identifier: str, course: Array, freedom: float = np.inf) -> SearchS
 
 
 def found(identifier: str, course: Array, freedom: float = np.inf) -> SearchState:
-    """When the cause is named."""
+    """The state once the cause is named."""
     state = searched(identifier, course, freedom)
     return replace(state, detections=(candidate(state, identifier),))
 

@@ -1,4 +1,4 @@
-"""Which sensors follow a course: the likeliest set, and each one's own evidence."""
+"""Sensors that follow a course: the likeliest set, and each one's own evidence."""
 
 import numpy as np
 import pytest

@@ -126,7 +126,9 @@ def test_a_cause_is_named_on_a_sensor_whose_errors_are_stated_too_large(sensors:
 
 @pytest.mark.parametrize("identifier", ["stand-drift", "alpha-shift"])
 def test_what_is_common_is_named_beside_a_sensor_whose_errors_are_stated_too_small(identifier: str) -> None:
-    """Its noise, believed to be none, shows in all sensors and would pass for a course of the applied vector."""
+    """The sensor's noise, believed to be none, shows in all sensors and would pass for a course of the applied
+    vector.
+    """
     found = diagnose(stated(measured(effect(identifier), 3), 0.1, slice(1, 2)))
     assert {f.cause for f in found.findings} == {identifier, "excess-noise"}
     assert not found.unexplained

@@ -1,4 +1,4 @@
-"""What the findings so far explain is one orthonormal span, and the residuals that remain are orthogonal to it."""
+"""The findings so far explain one orthonormal span, and the residuals that remain are orthogonal to it."""
 
 from dataclasses import replace
 

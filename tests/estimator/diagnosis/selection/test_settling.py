@@ -20,7 +20,7 @@ ZERO = 1
 
 
 def found_in(life: Life) -> Diagnosis:
-    """Of the last session, with the others as history."""
+    """Diagnosis of the last session, with the others as history."""
     *earlier, last = map(read_session, life.sessions)
     return diagnose(last, earlier)
 
@@ -65,7 +65,7 @@ def differing(rng: np.random.Generator, sensors: int, zeros: float) -> Differenc
 
 
 def places(sensors: int) -> np.ndarray:
-    """(1, P) of the zeros of all sensors."""
+    """(1, P) places of the zeros of all sensors."""
     return np.array([np.tile(np.arange(5) == ZERO, sensors) * 1.0])
 
 

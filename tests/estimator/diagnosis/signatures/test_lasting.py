@@ -96,7 +96,7 @@ def reordered(session: CalibrationSession, rows: np.ndarray) -> CalibrationSessi
 
 
 def test_a_lasting_effect_that_another_schedule_absorbed_otherwise_is_foretold() -> None:
-    """In order around the circle a ramp passes for a tilt of the axis; in a random order it does not."""
+    """A ramp passes for a tilt of the axis in order around the circle, but not in a random order."""
     plain = WHERE.measured(1)
     around = np.lexsort((plain.beta, plain.flipped))
     ramp = signature("bias-ramp")
@@ -113,7 +113,9 @@ def test_a_lasting_effect_that_another_schedule_absorbed_otherwise_is_foretold()
 
 @pytest.mark.parametrize("identifier", ["bias-temperature", "cubic-nonlinearity"])
 def test_what_the_history_absorbed_is_the_sum_over_its_sessions(identifier: str) -> None:
-    """At other temperatures each; those in which the cause is the same signature are worked out together."""
+    """The sessions are at other temperatures each; those in which the cause is the same signature are worked out
+    together.
+    """
     known, settings = signature(identifier), [one.setting for one in CHANGE.earlier]
     warmer = [replace(s, temperature=(k + 1) * s.temperature) for k, s in enumerate(settings)]
     earlier = [replace(one, setting=s) for one, s in zip(CHANGE.earlier, warmer, strict=True)]

@@ -1,4 +1,4 @@
-"""Where patterns without a name live, in words."""
+"""Places of patterns without a name, in words."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Where no noise is stated, a signature must stand out of the scatter of its own sensors' readings."""
+"""A signature must stand out of the scatter of its own sensors' readings where no noise is stated."""
 
 from dataclasses import replace
 

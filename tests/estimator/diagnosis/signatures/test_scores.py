@@ -20,7 +20,7 @@ LINEAR = [cause(name) for name in ("cubic-nonlinearity", "bias-ramp", "beta-ecce
 
 
 def p_values(*, stated: bool) -> list[float]:
-    """Of every place of four causes in twenty sessions without an effect."""
+    """p-values of every place of four causes in twenty sessions without an effect."""
     where, found = scene(ACCELEROMETER, 0), []
     for seed in range(20):
         session = where.measured(seed)

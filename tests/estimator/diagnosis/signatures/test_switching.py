@@ -15,11 +15,11 @@ WAVES = np.outer(np.arange(ROWS), np.array([0.0, 0.26, 0.3, 0.52, 0.6])) + np.ar
 ABSORBED = np.linalg.qr(np.sin(WAVES))[0]
 FREE = np.eye(ROWS) - ABSORBED @ ABSORBED.T
 ROOT = np.linalg.svd(FREE)[0][:, : ROWS - 5]
-"""What a calibration of five parameters leaves of 24 readings."""
+"""Directions that a calibration of five parameters leaves of 24 readings."""
 
 
 def told_of(readings: Array, least: float = 1.0) -> tuple[float, Array]:
-    """What is made of readings (R,), in standard errors, of which the calibration absorbs its share."""
+    """Evidence and likeliest states of readings (R,), in standard errors, beside what the calibration absorbs."""
     return likeliest_states(ROOT, ROOT.T @ readings, ABSORBED, least)
 
 
