@@ -15,7 +15,6 @@ from service.outlook import api as feeds
 from service.pages import operations
 from service.pages.due import api as due
 from service.pages.fleet import api as fleet
-from service.pages.review import api as review
 from service.pages.session import api as sessions
 from service.pages.stand import api as stands
 from service.pages.type import api as unit_types
@@ -83,7 +82,7 @@ ROUTERS = (
     papers.printing_router, diagnoses.router, records.events_router, register.router, units.usable_router,
     papers.labels_router, units.router, unit_types.router, models.router, plans.router, stands.router,
     uploads.templates_router, uploads.layouts_router, uploads.router, flags.router,
-    remarks.router, flags.webhooks_router, feeds.router, due.router, review.router, fleet.router, work.router,
+    remarks.router, flags.webhooks_router, feeds.router, due.router, fleet.router, work.router,
     people.router,
 )  # fmt: skip
 """Of every resource, in the order in which addresses are tried."""

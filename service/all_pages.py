@@ -13,7 +13,6 @@ from service.flags import pages as flags
 from service.models import pages as models
 from service.pages import help, routes
 from service.pages.due import pages as due
-from service.pages.review import pages as review
 from service.pages.session import list_pages as sessions
 from service.pages.stand import pages as stands
 from service.pages.type import pages as types
@@ -34,7 +33,7 @@ from service.web.problem_pages import ProblemPages, unexpected_pages
 from service.work import pages as work
 
 PARTS = (
-    routes, due, review, account_pages, admin_pages, papers, diagnoses, flags, layouts, models, records,
+    routes, due, account_pages, admin_pages, papers, diagnoses, flags, layouts, models, records,
     remarks, oidc_pages, before_pages, plan_pages, sessions, stands, types, arrivals_pages, help, work,
     assets,
 )  # fmt: skip

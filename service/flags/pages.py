@@ -17,6 +17,7 @@ from service.flags.view import ME, FlagsView, active_names, assignee_meant, choi
 from service.flags.view import STATES as CHOICES
 from service.groups.words import place_in_words
 from service.models.records import Scope
+from service.pages.waiting import WaitingMatter, waiting_for
 from service.people.admission import PersonOf
 from service.people.dependencies import SEE_OTHER, By, Number, OptionalText, StorageOf, Why
 from service.queue.store import PendingWork
@@ -109,6 +110,8 @@ class FlagsPage:
     """Whom a flag can be given to; empty where anybody may be named."""
     pending: str
     """What is still being worked out, and may change the list; empty where nothing is."""
+    waiting: tuple[WaitingMatter, ...]
+    """What waits for the reader beside flags; on the first page of the whole list only."""
 
 
 def flags_page(
@@ -117,6 +120,7 @@ def flags_page(
     assigned: Mapping[str, str],
     people: Sequence[str],
     pending: str = "",
+    waiting: Sequence[WaitingMatter] = (),
 ) -> FlagsPage:
     """One page of open flags."""
     shown = Shown.of(view, found, lambda flag: flag.id)
@@ -129,6 +133,7 @@ def flags_page(
         assigned=assigned,
         people=tuple(people),
         pending=pending,
+        waiting=tuple(waiting),
     )
 
 
@@ -164,14 +169,15 @@ To = Annotated[str, Form(max_length=200, pattern=NO_NUL)]
 
 
 @router.get("")
-def show_flags(request: Request, store: Reading, person: PersonOf, view: Asking) -> HTMLResponse:
-    """The open flags of the fleet, newest first, or those of them that the address asks for."""
+def show_flags(request: Request, store: Reading, person: PersonOf, now: Now, view: Asking) -> HTMLResponse:
+    """What waits for the reader: the open flags of the fleet, worst first, or those that the address asks for."""
     if view.assigned == ME and not person.login:
         view = view.model_copy(update={"assigned": ""})
     found = Flags(store).page(view.query(assignee_meant(store, view.assigned, person)))
     assigned = choices_of(Flags(store).assignees(), is_signed_in=bool(person.login))
     pending = pending_in_words(PendingWork(store).counts())
-    return render(request, "flags.html", flags_page(found, view, assigned, active_names(store), pending))
+    waiting = () if view.narrows or view.after or view.before else waiting_for(store, person, now)
+    return render(request, "flags.html", flags_page(found, view, assigned, active_names(store), pending, waiting))
 
 
 @router.post("/assign")

@@ -88,6 +88,8 @@ class FlagQuery(ListQuery):
     """About a type as a whole."""
     stand: str | None = None
     """About a stand, whether units, single sessions or all of them together tell of it."""
+    worst_first: bool = False
+    """Whether the gravest come first, not the newest."""
     assignee: Assignee | None = None
     """Who looks after it, by the account or, where the flag names none, by the name; of nobody none is anybody's."""
 
@@ -127,9 +129,23 @@ def _is_of(assignee: Assignee) -> ColumnElement[bool]:
 
 NEWEST = (Key(FlagRow.id, is_falling=True, known=int),)
 OPEN_FIRST = (Key(IS_RESOLVED, stays=True, known=_is_resolved), *NEWEST)
+WORST = (
+    Key(case({matter.value: rank for rank, matter in enumerate(Matter)}, value=FlagRow.matter)),
+    Key(FlagRow.severity, is_falling=True),
+    Key(FlagRow.id, is_falling=True),
+)
+"""The gravest matter first, as `Matter` lists them."""
+
+
+def _keys(wanted: FlagQuery) -> tuple[Key, ...]:
+    if wanted.worst_first:
+        return WORST
+    return NEWEST if wanted.unresolved else OPEN_FIRST
+
+
 FLAGS: Listing[FlagQuery] = Listing(
     name=FlagRow.id,
-    keys=lambda wanted: NEWEST if wanted.unresolved else OPEN_FIRST,
+    keys=_keys,
     conditions={
         "unit": _is_on,
         "unit_type": lambda name: and_(FlagRow.scope == Scope.UNIT_TYPE, FlagRow.subject == name),

@@ -41,7 +41,7 @@ def active_names(store: Store) -> tuple[str, ...]:
 
 STATES = {FlagState.RAISED.value: "Not acknowledged", FlagState.ACKNOWLEDGED.value: "Acknowledged"}
 """Choices, in words."""
-NEWEST, OLDEST = "newest", "oldest"
+WORST, NEWEST, OLDEST = "worst", "newest", "oldest"
 MINE, NOBODYS = "Assigned to me", "Assigned to nobody"
 
 
@@ -61,7 +61,7 @@ class FlagsView(ListView):
     """Flags that are open."""
 
     PATH = "/flags"
-    ORDERS: ClassVar = {NEWEST: "newest first", OLDEST: "oldest first"}
+    ORDERS: ClassVar = {WORST: "worst first", NEWEST: "newest first", OLDEST: "oldest first"}
     q: Words = ""
     matter: Annotated[Asked, one_of(set(Matter))] = ""
     state: Annotated[Asked, one_of(STATES)] = ""
@@ -86,6 +86,7 @@ class FlagsView(ListView):
             assignee=assignee,
             after=int(self.after) if self.after else None,
             before=int(self.before) if self.before else None,
+            worst_first=self.sort == WORST,
             backwards=self.sort == OLDEST,
         )
 

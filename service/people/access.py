@@ -46,7 +46,6 @@ GET /plan
 GET /ready
 GET /missing
 GET /jobs
-GET /review
 GET /jobs/{{id}}
 GET /jobs/{{id}}/outcome
 POST /jobs/report
@@ -106,7 +105,6 @@ GET {API}/flags
 GET {API}/feeds/due.ics
 GET {API}/fleet
 GET {API}/fleet/report
-GET {API}/review
 GET {API}/jobs
 GET {API}/jobs/failed
 GET {API}/jobs/{{id}}

@@ -13,7 +13,7 @@ from service.web.render import render
 CREW = replace(EVERYBODY, login="crew", name="Crew", role=Role.CREW)
 ENGINEER = replace(EVERYBODY, login="engineer", name="Engineer", role=Role.ENGINEER)
 VIEWER = replace(EVERYBODY, login="viewer", name="Viewer", role=Role.VIEWER)
-REST = ["/review", "/sessions", "/stands", "/unit-types", "/plan", "/jobs"]
+REST = ["/sessions", "/stands", "/unit-types", "/plan", "/jobs"]
 
 
 def links(person: Person, where: str) -> list[str]:
