@@ -30,7 +30,7 @@ from service.people.dependencies import StorageOf
 from service.settings import Settings
 from service.storage.queries import Store
 from service.web.dependencies import LanguageOf, Now, Reading, SettingsOf
-from service.web.fields import TEXT, Name, Serial, SessionId, Text
+from service.web.fields import Serial, SessionId, Sought, Text
 from service.web.files import as_file
 from service.web.problem_document import errors
 
@@ -45,7 +45,7 @@ Format = Annotated[
 ]
 CertificateNumber = Annotated[
     str,
-    Path(pattern=TEXT, max_length=60, description="Number of the certificate.", examples=["3f9a0c5be1d24786aa10-0-1"]),
+    Path(max_length=60, description="Number of the certificate.", examples=["3f9a0c5be1d24786aa10-0-1"]),
 ]
 
 
@@ -123,7 +123,7 @@ def print_certificates(
     desk: DeskOf,
     now: Now,
     person: PersonOf,
-    session: Annotated[list[Name], Query(min_length=1, max_length=MOST, description="Ids of sessions.")],
+    session: Annotated[list[Sought], Query(min_length=1, max_length=MOST, description="Ids of sessions.")],
     *,
     by: Annotated[Text, Query(description="Who issues them; kept with their numbers.")] = "",
 ) -> Response:

@@ -16,7 +16,7 @@ from service.papers.desk import Papers, SignedIssue, papers_of, sign
 from service.papers.records import Meaning, Signature
 from service.papers.words import STATES, done_by, moment_of
 from service.people.admission import PersonOf, attempt_of
-from service.people.dependencies import NOT_BLANK, SEE_OTHER, By, Key, StorageOf
+from service.people.dependencies import SEE_OTHER, By, FormLines, FormText, Key, StorageOf
 from service.people.secret import LONGEST
 from service.records.unit_changes import set_customer
 from service.sessions.records import StoredSession
@@ -24,7 +24,7 @@ from service.sessions.states import RecordState
 from service.sessions.store import Sessions
 from service.units.records import Customer
 from service.web.dependencies import Now, Reading
-from service.web.fields import NO_NUL
+from service.web.fields import Name
 from service.web.render import render
 
 RELEASED, REVIEWED, OPEN = "Approved", "Reviewed, not approved yet", "Not signed yet"
@@ -146,9 +146,9 @@ def show_certificate(request: Request, id: Key, store: Reading, desk: DeskOf, pe
 def take_signature(
     request: Request,
     id: Key,
-    number: Annotated[str, Form(max_length=60, pattern=NOT_BLANK)],
+    number: Annotated[Name, Form(max_length=60)],
     meaning: Annotated[Meaning, Form()],
-    password: Annotated[str, Form(max_length=LONGEST, pattern=NO_NUL)],
+    password: Annotated[str, Form(max_length=LONGEST)],
     *,
     desk: DeskOf,
     person: PersonOf,
@@ -174,8 +174,8 @@ def change_customer(
     storage: StorageOf,
     now: Now,
     *,
-    name: Annotated[str, Form(max_length=200, pattern=NO_NUL)] = "",
-    address: Annotated[str, Form(max_length=2000, pattern=NO_NUL)] = "",
+    name: FormText = "",
+    address: FormLines = "",
 ) -> RedirectResponse:
     """Records for whom the unit is calibrated."""
     set_customer(storage, serial, Customer(name.strip(), address.strip()), now, who=by)

@@ -26,13 +26,13 @@ from service.people.changes import (
     sign_out,
     use_link,
 )
-from service.people.dependencies import SEE_OTHER, Number, StorageOf
+from service.people.dependencies import SEE_OTHER, FormName, FormText, Number, StorageOf
 from service.people.secret import LONGEST, SHORTEST
 from service.people.store import Accounts, Tokens
 from service.settings import Settings
 from service.web.application import application_of
 from service.web.dependencies import Now, Reading, SettingsOf
-from service.web.fields import NO_NUL
+from service.web.fields import Sought
 from service.web.render import render
 
 
@@ -101,10 +101,9 @@ def _line(token: Token, now: datetime) -> TokenLine:
 
 
 router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
-Login = Annotated[str, Form(max_length=200, pattern=NO_NUL)]
-Password = Annotated[str, Form(max_length=LONGEST, pattern=NO_NUL)]
+Login = Annotated[Sought, Form()]
+Password = Annotated[str, Form(max_length=LONGEST)]
 Secret = Annotated[str, Path(max_length=100, pattern=r"^[A-Za-z0-9_-]+$")]
-Label = Annotated[str, Form(min_length=1, max_length=200, pattern=NO_NUL)]
 
 
 @router.get("/sign-in")
@@ -149,7 +148,7 @@ def take_link(
     settings: SettingsOf,
     now: Now,
     login: Login = "",
-    name: Login = "",
+    name: FormText = "",
 ) -> Response:
     """Sets the password and signs in."""
     owner = link_of(storage, secret, now)
@@ -186,7 +185,7 @@ def take_password(
 @router.post("/account/tokens")
 def take_token(
     request: Request,
-    label: Label,
+    label: FormName,
     role: Annotated[Role, Form()],
     days: Annotated[int, Form(ge=1, le=366)],
     storage: StorageOf,

@@ -9,6 +9,7 @@ from service.errors import RefusedError
 from service.ingest.names import plain_name
 from service.kit.libraries import pl
 from service.kit.printable import printable
+from service.kit.text import fault_of_text, with_plain_ends
 from service.units.records import NewEntry
 
 COLUMNS = ("serial", "unit_type", "owner", "location", "custodian", "note")
@@ -71,8 +72,8 @@ def _of_rows(rows: Sequence[dict[str, Any]]) -> list[Problem]:
             longest = LONGEST.get(name, SHORT)
             if len(_cell(row.get(name))) > longest:
                 found.append(problem_at(name, "is longer than {longest} characters", number, longest=longest))
-            if "\x00" in _cell(row.get(name)):
-                found.append(Problem(name, "contains a character that cannot be stored", number))
+            if fault := fault_of_text(with_plain_ends(str(row.get(name) or ""))):
+                found.append(Problem(name, fault, number))
         serial = _cell(row.get("serial"))
         if serial in seen and serial:
             found.append(

@@ -8,7 +8,8 @@ from pydantic import Field
 from service.fleet.records import FleetQuery, Order
 from service.sessions.decision import Verdict
 from service.sessions.words.conditions import NOT_MEASURED, REFERENCE, RESERVED
-from service.web.list_view import Asked, ListView, Words, one_of
+from service.web.fields import Sought
+from service.web.list_view import ListView, Words, one_of
 
 DUE = {"overdue": "Overdue", "30": "Due within 30 days", "90": "Due within 90 days", "now": "Do not use, or repeat"}
 """Choices of the next calibration's date, in words."""
@@ -31,15 +32,15 @@ class FleetView(ListView):
         Order.LAST.value: "by last session",
     }
     q: Words = ""
-    condition: Annotated[Asked, one_of({*Verdict, RESERVED.key, REFERENCE.key, NOT_MEASURED.key})] = ""
-    due: Annotated[Asked, one_of(DUE)] = ""
-    type: Asked = ""
-    stand: Asked = ""
-    lot: Asked = ""
-    location: Asked = ""
-    custodian: Asked = ""
-    retired: Annotated[Asked, one_of(RETIRED)] = ""
-    flagged: Asked = ""
+    condition: Annotated[Sought, one_of({*Verdict, RESERVED.key, REFERENCE.key, NOT_MEASURED.key})] = ""
+    due: Annotated[Sought, one_of(DUE)] = ""
+    type: Sought = ""
+    stand: Sought = ""
+    lot: Sought = ""
+    location: Sought = ""
+    custodian: Sought = ""
+    retired: Annotated[Sought, one_of(RETIRED)] = ""
+    flagged: Sought = ""
     page: Annotated[int, Field(ge=1, le=1_000_000)] = 1
     """Its number, for people; what is read begins after a unit."""
 

@@ -18,6 +18,7 @@ from estimator.json_object import Json
 from estimator.message import say
 from service.errors import AwayError, SignInError
 from service.kit.log import log
+from service.kit.text import in_one_line
 from service.people.provider import Callback, Claims, Journey, ProviderSettings
 from service.people.secret import is_same
 
@@ -193,7 +194,7 @@ def _bounded(answer: httpx.Response) -> bytes:
 def _text(claims: Mapping[str, Any], name: str) -> str:
     """A claim as text; empty for anything else."""
     value = claims.get(name)
-    return " ".join(value.replace("\x00", "").split())[:200] if isinstance(value, str) else ""
+    return in_one_line(value)[:200] if isinstance(value, str) else ""
 
 
 def _refused(why: str) -> SignInError:
