@@ -19,7 +19,7 @@ from estimator.message import say
 from service.errors import AwayError, SignInError
 from service.kit.log import log
 from service.kit.text import in_one_line
-from service.people.provider import Callback, Claims, Journey, ProviderSettings
+from service.people.provider import Callback, Claims, Journey, ProviderSettings, fault_of_subject
 from service.people.secret import is_same
 
 ALGORITHMS = ("RS256", "PS256", "ES256", "RS384", "RS512", "ES384", "EdDSA")
@@ -31,8 +31,6 @@ MOST_BYTES = 256 * 1024
 """Of an answer: metadata, a set of keys, a token."""
 LEEWAY = 60
 """Seconds by which clocks may differ."""
-LONGEST_SUBJECT = 255
-"""Characters (OpenID Connect Core 1.0, section 2)."""
 SILENT = "The sign-in provider does not answer as it should; try again, or sign in with a password."
 REFUSED = "The sign-in was not accepted: {why}. Try again, or ask an administrator."
 WELL_KNOWN = "/.well-known/openid-configuration"
@@ -154,7 +152,7 @@ class OpenIdProvider:
             raise _refused("its token was made for another program")
         if not is_same(str(claims["nonce"]), journey.nonce):
             raise _refused("its token was made for another sign-in")
-        if not 0 < len(claims["sub"]) <= LONGEST_SUBJECT or "\x00" in claims["sub"]:
+        if fault_of_subject(claims["sub"]):
             raise _refused("its token names nobody")
 
 
