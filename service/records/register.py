@@ -21,6 +21,7 @@ from service.storage.queries import Store
 from service.types.rules import named_only
 from service.types.store import UnitTypes
 from service.units.records import CustodyStep, Move, NewEntry, Registered
+from service.units.register_file import named
 from service.units.store import Register, Units
 
 NO_TYPE = "is missing: say the type of a unit that is not known yet"
@@ -68,7 +69,7 @@ def enter(storage: Storage, entries: Sequence[NewEntry], entering: Entering) -> 
             for problem in _problems(entry, known.get(entry.serial), is_measured=entry.serial in measured)
         )
         if problems:
-            raise RefusedError("The register cannot be changed so. Nothing was stored.", problems)
+            raise RefusedError("The register cannot be changed so. Nothing was stored.", named(problems))
         ordered = sorted(entries, key=lambda entry: entry.serial)
         changed = sum(_enter(store, entry, known.get(entry.serial), entering) for entry in ordered)
         new = sum(entry.serial not in known for entry in entries)

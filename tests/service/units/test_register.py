@@ -1,5 +1,6 @@
 """The register: units before their first session, where they are and who has them, and retired ones."""
 
+import tracemalloc
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from typing import Any
@@ -23,6 +24,7 @@ from service.units.store import Register
 from service.uploads.receive import upload
 from tests.conftest import Filled, Holding
 from tests.databases import all_on_both_engines as pytest_generate_tests  # noqa: F401 - the hook
+from tests.databases import one_engine
 from tests.service.dated import upload_and_date
 from tests.service.made_sessions import FAILED, session_bytes
 from tests.service.papers.documents import text_of
@@ -183,6 +185,40 @@ def test_every_fault_of_a_table_is_listed_by_row_and_column(table: str, places: 
     with pytest.raises(RefusedError) as refused:
         read_register(table.encode(), "a.csv")
     assert {(p.field, p.row) for p in refused.value.problems} == places
+
+
+HEADINGS = ",".join(f"h{number}" for number in range(20_000))
+TOO_LARGE = {
+    "wide and short rows": f"serial,{HEADINGS}\n" + 2000 * "a\n",
+    "headings": "serial," + ",".join(map(hex, range(90_000))) + "\na\n",
+    "commas": 1_000_000 * "," + "\n1,2\n",
+    "commas without an end": 1_000_000 * ",",
+    "rows of commas": 500 * (2000 * "," + "\n"),
+    "rows": "serial\n" + 2_000_000 * "a\n",
+    "one quoted cell": 'serial,note\n"' + 1_000_000 * "a;",
+    "headings of one row after another": 2000 * '"\n",' + "a\n",
+}
+
+
+@one_engine
+@pytest.mark.parametrize("name", TOO_LARGE)
+@pytest.mark.parametrize("path", ["/api/v1/register", "/register/import"])
+def test_a_table_that_is_too_large_is_refused_before_it_is_built(http: httpx.Client, name: str, path: str) -> None:
+    tracemalloc.start()
+    sent = http.post(path, files={"file": ("r.csv", TOO_LARGE[name])}, data={"by": "K. Ito"})
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert (sent.status_code, "r.csv" in sent.text) == (422, True)
+    assert len(sent.content) < 50_000
+    assert most < 20 * len(TOO_LARGE[name]) + 20_000_000
+
+
+@one_engine
+def test_of_many_faults_the_first_are_named_and_the_others_counted(http: httpx.Client) -> None:
+    for table in ("serial,note\n" + 900 * f"A,{2001 * 'x'}\n", "serial\n" + "".join(f"A{n}\n" for n in range(900))):
+        sent = http.post("/api/v1/register", files={"file": ("r.csv", table)}, data={"by": "K. Ito"})
+        problems = sent.json()["problems"]
+        assert (len(problems), "more problems" in problems[-1]["message"]) == (501, True)
 
 
 @pytest.fixture
