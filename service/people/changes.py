@@ -336,7 +336,7 @@ def require_no_token(person: Person) -> None:
         raise ForbiddenError(OUTLIVES)
 
 
-def require_may_revoke(person: Person, token: Token) -> None:
+def _require_may_revoke(person: Person, token: Token) -> None:
     """ForbiddenError unless a token is the person's own, or an administrator asks; a token revokes only itself."""
     if token.login != person.login and not person.may(Role.ADMIN):
         raise ForbiddenError(OTHERS)
@@ -364,10 +364,11 @@ def make_token(
     return token, secret
 
 
-def revoke_token(storage: Storage, id: int, now: datetime, *, who: str) -> Token:
-    """Revokes a token; again it changes nothing."""
+def revoke_token(storage: Storage, id: int, person: Person, now: datetime, *, who: str) -> Token:
+    """Revokes a token, where the person may; again it changes nothing."""
     with storage.database.writing() as store:
         token = Tokens(store).get(id)
+        _require_may_revoke(person, token)
         if token.revoked_at is None:
             Tokens(store).revoke(id, now)
             Audit(store).write(now, who, "revoke token", token.login, {"token": id, "label": token.label})
