@@ -26,7 +26,7 @@ from service.papers.records import NOT_STATED, Signature
 from service.papers.schemas import CorrectionDocument, NewSignature
 from service.papers.status import status_paper, status_pdf
 from service.people.admission import PersonOf, attempt_of
-from service.people.dependencies import StorageOf
+from service.people.dependencies import PasswordTurn, StorageOf
 from service.settings import Settings
 from service.storage.queries import Store
 from service.web.dependencies import LanguageOf, Now, Reading, SettingsOf
@@ -88,7 +88,7 @@ def read_approved_certificate(
 
 @router.post("/{id}/certificate/signatures", status_code=201, responses=errors(400, 401, 403, 404, 409, 422, 429, 507))
 def sign_certificate(
-    id: SessionId, new: NewSignature, desk: DeskOf, person: PersonOf, now: Now, request: Request
+    id: SessionId, new: NewSignature, _: PasswordTurn, desk: DeskOf, person: PersonOf, now: Now, request: Request
 ) -> Signature:
     """Sign the session's certificate: that you reviewed it, or that it is approved.
 

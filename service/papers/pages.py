@@ -16,7 +16,7 @@ from service.papers.desk import Desk, Papers, SignedIssue, papers_of, sign
 from service.papers.records import Meaning, Signature
 from service.papers.words import STATES, done_by, moment_of
 from service.people.admission import PersonOf, attempt_of
-from service.people.dependencies import SEE_OTHER, By, FormLines, FormText, Key, StorageOf
+from service.people.dependencies import SEE_OTHER, By, FormLines, FormText, Key, PasswordTurn, StorageOf
 from service.people.secret import LONGEST
 from service.records.unit_changes import set_customer
 from service.sessions.records import StoredSession
@@ -154,6 +154,7 @@ def take_signature(
     number: Annotated[Name, Form(max_length=60)],
     meaning: Annotated[Meaning, Form()],
     password: Annotated[str, Form(max_length=LONGEST)],
+    _: PasswordTurn,
     *,
     desk: DeskOf,
     person: PersonOf,

@@ -25,7 +25,7 @@ from service.people.changes import (
     sign_out,
     use_link,
 )
-from service.people.dependencies import SEE_OTHER, FormName, FormText, Number, StorageOf
+from service.people.dependencies import SEE_OTHER, FormName, FormText, Number, PasswordTurn, StorageOf
 from service.people.secret import LONGEST, SHORTEST
 from service.people.store import Accounts, Tokens
 from service.settings import Settings
@@ -116,6 +116,7 @@ def take_sign_in(
     request: Request,
     login: Login,
     password: Password,
+    _: PasswordTurn,
     storage: StorageOf,
     settings: SettingsOf,
     now: Now,
@@ -143,6 +144,7 @@ def take_link(
     request: Request,
     secret: Secret,
     password: Password,
+    _: PasswordTurn,
     storage: StorageOf,
     settings: SettingsOf,
     now: Now,
@@ -172,7 +174,7 @@ def show_account(request: Request, store: Reading, person: PersonOf, now: Now) -
 
 @router.post("/account/password")
 def take_password(
-    request: Request, old: Password, new: Password, storage: StorageOf, person: PersonOf, now: Now
+    request: Request, old: Password, new: Password, _: PasswordTurn, storage: StorageOf, person: PersonOf, now: Now
 ) -> RedirectResponse:
     """Changes the password; browsers must sign in again, and tokens are revoked. Guessing in an open browser is limited
     too."""

@@ -1,5 +1,6 @@
 """Dependencies of routes: both stores, with the sender's name in the audit trail."""
 
+from collections.abc import AsyncIterator
 from dataclasses import replace
 from typing import Annotated
 
@@ -7,6 +8,7 @@ from fastapi import Depends, Form, Path, Request
 
 from service.kit.person import Person
 from service.people.admission import PersonOf
+from service.people.turns import PasswordTurns
 from service.storage import Storage
 from service.web.application import application_of
 from service.web.fields import LongText, Name, Reason, Sought, Text
@@ -24,6 +26,13 @@ def _acting(storage: Storage, person: Person) -> Storage:
     return replace(storage, database=storage.database.acting(person.account))
 
 
+async def _turn(request: Request) -> AsyncIterator[None]:
+    async with application_of(request).part(PasswordTurns).one():
+        yield
+
+
+PasswordTurn = Annotated[None, Depends(_turn, scope="function")]
+"""A turn at hashing passwords, before the database is asked; BusyError where too many wait for one."""
 StorageOf = Annotated[Storage, Depends(_storage)]
 """Both stores, for flows that write."""
 
