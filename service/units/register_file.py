@@ -5,6 +5,7 @@ Separators are counted before the table is cut, and it is cut row by row: what i
 
 import csv
 import io
+import re
 from collections.abc import Mapping, Sequence
 from itertools import islice
 
@@ -30,7 +31,7 @@ LONGEST = {"note": 2000}
 SHORT = 200
 """Characters of any other field."""
 SEPARATORS = ",;\t"
-QUOTED = ("'=", "'+", "'-", "'@")
+QUOTED = re.compile(r"(^|;)'(?=[=+\-@])")
 """How an export writes what a spreadsheet would take for a formula."""
 
 
@@ -106,8 +107,7 @@ def _of_row(row: Mapping[str, str], number: int) -> list[Problem]:
 
 
 def _cell(value: str) -> str:
-    text = plain_name(value)
-    return text[1:] if text.startswith(QUOTED) else text
+    return QUOTED.sub(r"\1", plain_name(value))
 
 
 def _refused(filename: str, problems: Sequence[Problem]) -> RefusedError:

@@ -1,5 +1,7 @@
 """The register: units before their first session, where they are and who has them, and retired ones."""
 
+import csv
+import io
 import tracemalloc
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
@@ -185,6 +187,20 @@ def test_every_fault_of_a_table_is_listed_by_row_and_column(table: str, places: 
     with pytest.raises(RefusedError) as refused:
         read_register(table.encode(), "a.csv")
     assert {(p.field, p.row) for p in refused.value.problems} == places
+
+
+@one_engine
+def test_a_name_with_a_semicolon_is_one_cell_and_no_formula_and_is_read_back(http: httpx.Client) -> None:
+    entry = {"unit_type": "RA-9", "location": "Hangar 2;=1+1", "custodian": "=2;@3", "by": "K. Ito"}
+    assert http.put("/api/v1/units/BA-900/register", json=entry).status_code == 200
+    table = http.get("/api/v1/register?format=csv").text
+    row = next(row for row in csv.DictReader(io.StringIO(table)) if row["serial"] == "BA-900")
+    assert (row["location"], row["custodian"]) == ("Hangar 2;'=1+1", "'=2;'@3")
+    assert '"Hangar 2;' in table
+    for cells in csv.reader(io.StringIO(table), delimiter=";"):
+        assert not any(cell.startswith(("=", "+", "-", "@")) for cell in cells)
+    sent = http.post("/api/v1/register", files={"file": ("r.csv", table)}, data={"by": "K. Ito"})
+    assert sent.json() == {"new": 0, "changed": 1, "unchanged": 1}
 
 
 HEADINGS = ",".join(f"h{number}" for number in range(20_000))
