@@ -3,6 +3,8 @@
 import csv
 import io
 import tracemalloc
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from typing import Any
@@ -16,11 +18,12 @@ from service.fleet.records import FleetQuery, Order
 from service.fleet.store import Fleet
 from service.judging.usable_reading import usable_unit
 from service.outlook.store import Outlooks
-from service.records.register import Entering, enter, move_unit
+from service.records import register
+from service.records.register import PIECE, Entering, enter, move_unit
 from service.storage import Storage
 from service.storage.queries import Store
 from service.types.store import UnitTypes
-from service.units.records import CustodyStep, Move, NewEntry
+from service.units.records import CustodyStep, Move, NewEntry, Registered
 from service.units.register_file import read_register
 from service.units.store import Register
 from service.uploads.receive import upload
@@ -187,6 +190,35 @@ def test_every_fault_of_a_table_is_listed_by_row_and_column(table: str, places: 
     with pytest.raises(RefusedError) as refused:
         read_register(table.encode(), "a.csv")
     assert {(p.field, p.row) for p in refused.value.problems} == places
+
+
+def test_others_write_while_a_long_list_is_entered(http: httpx.Client) -> None:
+    table = "serial,unit_type,location\n" + "".join(f"U-{n},RA-{n % 7},Hangar {n}\n" for n in range(500))
+    note = {"text": "moved by road", "by": "K. Ito"}
+    with ThreadPoolExecutor(1) as pool:
+        sent = pool.submit(http.post, "/api/v1/register", files={"file": ("r.csv", table)}, data={"by": "K. Ito"})
+        written = 0
+        while not sent.done():
+            written += http.post("/api/v1/units/BA-017/notes", json=note).status_code == 201
+    assert sent.result().json() == {"new": 500, "changed": 0, "unchanged": 0}
+    assert written > 2
+
+
+def test_a_list_that_somebody_makes_wrong_meanwhile_says_what_is_entered(
+    storage: Storage, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    entries = tuple(NewEntry(f"U-{n:02d}", "RA-9") for n in range(2 * PIECE))
+    known = register._known
+
+    def changed_meanwhile(store: Store, rows: Sequence[tuple[int, NewEntry]], refusal: str) -> dict[str, Registered]:
+        is_second = len(rows) == PIECE and rows[0][1].serial == f"U-{PIECE:02d}"
+        return known(store, [(n, replace(e, unit_type="")) for n, e in rows] if is_second else rows, refusal)
+
+    monkeypatch.setattr(register, "_known", changed_meanwhile)
+    with pytest.raises(RefusedError, match=f"{PIECE} of {2 * PIECE} units are entered"):
+        enter(storage, entries, BY)
+    monkeypatch.undo()
+    assert vars(enter(storage, entries, BY)) == {"new": PIECE, "changed": 0, "unchanged": PIECE}
 
 
 @one_engine
