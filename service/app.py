@@ -20,6 +20,7 @@ from service.opening import open_storage
 from service.papers.sealing import Seal, seal_of
 from service.people.admission import Gate
 from service.people.provider import provider_of
+from service.people.turns import PasswordTurns
 from service.settings import VERSION, Settings
 from service.web import guard
 from service.web.application import Application
@@ -80,6 +81,7 @@ def _application(settings: Settings, clock: Callable[[], datetime], optional: di
         Gate: Gate(settings, provider_of(settings)),
         Reader: Reader(storage, clock, bell, metrics, k, workers),
         GroupReader: GroupReader(storage, clock, bell, metrics, workers),
+        PasswordTurns: PasswordTurns(),
         JobDesk: JobDesk(clock, bell, metrics, k, workers),
     }
     seal = seal_of(settings.seal_key_file, settings.seal_password_file)

@@ -16,8 +16,8 @@ from typer.exceptions import TyperException
 
 from service.commands.catalogue import CATALOGUE
 from service.commands.examples import help_of
-from service.commands.speech import FAILED, say, set_language, translated
-from service.errors import ServiceError
+from service.commands.speech import FAILED, problems_in_words, say, set_language, translated
+from service.errors import RefusedError, ServiceError
 from service.languages.language import Language
 
 
@@ -101,7 +101,8 @@ def main() -> None:
         sys.exit(FAILED)
     except (ServiceError, OSError) as fault:
         cause = getattr(fault.__cause__, "orig", None)
-        say(f"imu-health: {translated(str(fault))}" + (f" ({cause})" if cause else ""))
+        places = f" {problems_in_words(fault.problems)}" if isinstance(fault, RefusedError) else ""
+        say(f"imu-health: {translated(str(fault))}" + (f" ({cause})" if cause else "") + places)
         sys.exit(FAILED)
     sys.exit(code if isinstance(code, int) else 0)
 

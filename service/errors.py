@@ -103,7 +103,7 @@ class AwayError(ServiceError):
 
 
 class BusyError(AwayError):
-    """Too many large files are being read at once; nothing of this one was stored."""
+    """Too much that is costly is under way; nothing was stored."""
 
 
 class PendingError(AwayError):

@@ -103,6 +103,7 @@ class Settings(BaseSettings):
     oidc_issuer: str = Field(
         default="",
         pattern=r"^(https?://[^\s?#]+)?$",
+        max_length=500,
         description="OpenID provider for signing in, its issuer address: https://login.example.org.",
     )
     oidc_client_id: str = Field(default="", max_length=500, description="Client ID of this service at the provider.")

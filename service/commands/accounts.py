@@ -14,7 +14,7 @@ from service.commands.options import DatabaseUrl, DataFolder, settings_from
 from service.commands.speech import say
 from service.errors import ConflictError
 from service.kit.person import COMMAND_LINE as WHO
-from service.kit.person import Account, Role, Token
+from service.kit.person import EVERYBODY, Account, Role, Token
 from service.opening import open_database
 from service.people.changes import AccountChange, add_account, change_account, make_link, make_token, revoke_token
 from service.people.sign_in_elsewhere import connect
@@ -142,7 +142,7 @@ def take_token(
 ) -> None:
     """Let nobody in with a token any more; it stays listed."""
     with _opened(settings_from(database_url=database_url, data_folder=data_folder)) as storage:
-        found = revoke_token(storage, id, _now(), who=WHO)
+        found = revoke_token(storage, id, EVERYBODY, _now(), who=WHO)
     screen().print(f"Token {found.id} of [bold]{escape(found.login)}[/], {escape(found.label)}, is revoked.")
 
 

@@ -18,6 +18,7 @@ from service.storage import Files
 from service.storage.audit import Audit
 from service.storage.backup import Restored, restore, verified, write_backup
 from service.storage.backup.manifest import Manifest, RevokedAccess
+from service.storage.backup.rows import INSTEAD
 from service.storage.losses import Loss, losses
 from service.storage.schema import downgrade, head_revision, upgrade
 
@@ -132,6 +133,8 @@ def restore_backup(
     _record_restore(settings.database, restored, now)
     typer.echo(f"Restored {_contents(restored.manifest)}.")
     _report_access(restored.access)
+    for place, count in restored.changed.items():
+        say(f"{place}: {counted(count, 'text')} held NUL, which PostgreSQL refuses: {INSTEAD} stands for it now.")
 
 
 def _record_restore(url: str, restored: Restored, now: datetime) -> None:
@@ -140,7 +143,8 @@ def _record_restore(url: str, restored: Restored, now: datetime) -> None:
         return
     database = open_database(url)
     with database.writing() as store:
-        details = {"made_at": restored.manifest.made_at.isoformat(), **vars(restored.access)}
+        made_at, changed = restored.manifest.made_at.isoformat(), dict(restored.changed)
+        details = {"made_at": made_at, **vars(restored.access), "changed": changed}
         Audit(store).write(now, WHO, "restore", "backup", details)
     database.close()
 

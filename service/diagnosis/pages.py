@@ -31,7 +31,7 @@ from service.diagnosis.words.gain import gain_in_words
 from service.models.records import ModelRevision, NewModel, Scope
 from service.models.rules import in_force
 from service.models.store import Models
-from service.people.dependencies import SEE_OTHER, By, Key, StorageOf
+from service.people.dependencies import SEE_OTHER, By, FormLines, FormText, Key, StorageOf, Why
 from service.records.dependencies import ReceptionOf
 from service.records.models import accept_model, withdraw_model
 from service.records.recalibrate import recompute_beside
@@ -43,7 +43,6 @@ from service.sessions.store import Sessions
 from service.sessions.words.readings import bands_in_words
 from service.storage.queries import Store
 from service.web.dependencies import Now, Reading
-from service.web.fields import NO_NUL
 from service.web.render import render
 from service.work.dependencies import ReaderOf
 from service.work.readers import PAGE_PATIENCE
@@ -254,10 +253,10 @@ def accept(
     reader: ReaderOf,
     now: Now,
     *,
-    cause: Annotated[str, Form(max_length=200, pattern=NO_NUL)],
+    cause: FormText,
     scope: Annotated[Scope, Form()],
     by: By,
-    note: Annotated[str, Form(max_length=2000, pattern=NO_NUL)] = "",
+    note: FormLines = "",
     again: Annotated[bool, Form()] = False,
 ) -> RedirectResponse:
     """Accepts a named cause, and shows what it gains and, where stored sessions are computed again, what moves."""
@@ -274,7 +273,7 @@ def withdraw(
     now: Now,
     *,
     by: By,
-    why: Annotated[str, Form(min_length=1, max_length=2000, pattern=NO_NUL)],
+    why: Why,
 ) -> RedirectResponse:
     """Takes an accepted cause out of the model again, and shows the models that concern the session."""
     withdraw_model(storage, revision, by, why, now)

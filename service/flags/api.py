@@ -19,7 +19,7 @@ from service.people.dependencies import StorageOf
 from service.storage.queries import Store
 from service.units.store import Units
 from service.web.dependencies import Now, Reading, SettingsOf
-from service.web.fields import Body, Limit, LongText, Name, Number, Paged, Reason, Text, Window, WindowOf
+from service.web.fields import Body, Limit, LongText, Name, Number, Paged, Reason, Sought, Text, Window, WindowOf
 from service.web.problem_document import errors
 
 FlagNumber = Annotated[int, Field(ge=1, le=2_000_000_000)]
@@ -79,11 +79,11 @@ def list_flags(
     store: Reading,
     window: WindowOf,
     state: WantedState = None,
-    unit: Annotated[Text | None, Query(description="Only flags of this serial number.")] = None,
+    unit: Annotated[Sought | None, Query(description="Only flags of this serial number.")] = None,
     after: Annotated[
         int | None, Query(ge=1, le=2_000_000_000, description="Only those that come after this one.")
     ] = None,
-    assigned: Annotated[Text | None, Query(description=ASSIGNED)] = None,
+    assigned: Annotated[Sought | None, Query(description=ASSIGNED)] = None,
     *,
     person: PersonOf,
 ) -> FlagPage:

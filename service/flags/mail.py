@@ -3,11 +3,13 @@
 import smtplib
 import ssl
 from dataclasses import dataclass
-from email.message import EmailMessage
+from email.header import Header
+from email.mime.text import MIMEText
 from email.utils import format_datetime
 from typing import Literal
 
 from service.flags.records import Notice
+from service.kit.text import in_one_line, without_control
 
 SCHEME = "mailto:"
 SECONDS = 10.0
@@ -39,7 +41,7 @@ def send(server: MailServer, address: str, notice: Notice) -> tuple[bool, str]:
         with _connected(server) as client:
             client.send_message(_message(server, address, notice))
     except (OSError, smtplib.SMTPException) as fault:
-        return False, f"{type(fault).__name__}: {fault}"
+        return False, in_one_line(f"{type(fault).__name__}: {fault}")
     return True, "accepted by the mail server"
 
 
@@ -52,12 +54,19 @@ def _connected(server: MailServer) -> smtplib.SMTP:
     return client
 
 
-def _message(server: MailServer, address: str, notice: Notice) -> EmailMessage:
-    """The same at every attempt, by its identifier."""
-    message = EmailMessage()
+LONGEST_SUBJECT = 200
+"""Characters."""
+
+
+def _message(server: MailServer, address: str, notice: Notice) -> MIMEText:
+    """The same at every attempt, by its identifier.
+
+    The subject is always encoded: of a plain one, readers would decode what looks like an encoded word.
+    """
+    place = f"Unit {in_one_line(notice.unit)}, {notice.at:%Y-%m-%d %H:%M} UTC, {in_one_line(notice.who)}"
+    message = MIMEText(f"{without_control(notice.text)}\n\n{place}\n", "plain", "utf-8")
     message["From"], message["To"] = server.sender, address
-    message["Subject"] = f"{notice.unit}: {notice.text}".replace("\n", " ")[:200]
+    message["Subject"] = Header(in_one_line(f"{notice.unit}: {notice.text}")[:LONGEST_SUBJECT], "utf-8").encode()
     message["Date"] = format_datetime(notice.at)
     message["Message-ID"] = f"<{notice.key}@imu-health>"
-    message.set_content(f"{notice.text}\n\nUnit {notice.unit}, {notice.at:%Y-%m-%d %H:%M} UTC, {notice.who}\n")
     return message

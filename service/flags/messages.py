@@ -19,9 +19,11 @@ from service.flags.changes import fault_of
 from service.flags.mail import NO_MAIL, SCHEME, MailServer, send
 from service.flags.records import DeliveryState, Outgoing
 from service.flags.webhooks_store import Webhooks
+from service.kit.failure import AT_FAULT
 from service.kit.guard import Guard
 from service.kit.libraries import httpx
 from service.kit.metrics import Metrics
+from service.kit.text import in_one_line
 from service.storage import Storage
 
 AT_A_TIME = 20
@@ -98,11 +100,26 @@ class Outbox:
         with self.storage.database.writing() as store:
             return Webhooks(store).claim(now, now + CLAIM, AT_A_TIME, busy)
 
-    def put(self, outgoing: Outgoing, outcome: str, *, accepted: bool) -> None:
+    def put(self, outgoing: Outgoing, ended: "Ended") -> None:
         """Keeps what became of an attempt."""
-        state, at = _after(outgoing, accepted, self.clock())
+        state, at = _after(outgoing, ended, self.clock())
         with self.storage.database.writing() as store:
-            Webhooks(store).put(outgoing.delivery, state, outcome, at)
+            Webhooks(store).put(outgoing.delivery, state, ended.outcome, at)
+
+
+@dataclass(frozen=True)
+class Ended:
+    """What became of an attempt."""
+
+    accepted: bool
+    outcome: str
+    """What the receiver said, or why it could not be asked."""
+    is_last: bool = False
+    """Whether another attempt would end the same way."""
+
+
+UNSENT = Ended(accepted=False, outcome=AT_FAULT, is_last=True)
+"""A message that the program cannot make or hand over."""
 
 
 class DeliveryTurns:
@@ -137,8 +154,10 @@ class DeliveryTurns:
         """The messages of one receiver, one after another, oldest first."""
         for outgoing in batch:
             with self._guard.alone("outbox", outgoing.webhook.url):
-                accepted, outcome = await _attempt(outgoing, self._outbox.ways, self._http)
-                await asyncio.to_thread(self._outbox.put, outgoing, outcome, accepted=accepted)
+                ended = UNSENT
+                with self._guard.at_request("outbox", outgoing.webhook.url):
+                    ended = await _attempt(outgoing, self._outbox.ways, self._http)
+                await asyncio.to_thread(self._outbox.put, outgoing, ended)
 
 
 @asynccontextmanager
@@ -154,13 +173,14 @@ async def turns_of(outbox: Outbox, guard: Guard) -> AsyncIterator[DeliveryTurns]
             await turns.cancel()
 
 
-async def _attempt(outgoing: Outgoing, ways: Ways, http: "httpx.AsyncClient") -> tuple[bool, str]:
-    """Whether the receiver accepted, and what it said; its answer's body is never read."""
+async def _attempt(outgoing: Outgoing, ways: Ways, http: "httpx.AsyncClient") -> Ended:
+    """Sends the message once; the body of the answer is never read."""
     fault = fault_of(outgoing.webhook.url, ways.hosts, has_mail=ways.mail.is_there)
     if fault:
-        return False, f"the address {fault}"
+        return Ended(False, f"the address {fault}")
     if outgoing.webhook.url.startswith(SCHEME):
-        return await asyncio.to_thread(send, ways.mail, outgoing.webhook.url.removeprefix(SCHEME), outgoing.notice)
+        address = outgoing.webhook.url.removeprefix(SCHEME)
+        return Ended(*await asyncio.to_thread(send, ways.mail, address, outgoing.notice))
     body = payload(outgoing)
     headers = {
         "Content-Type": "application/json",
@@ -171,18 +191,19 @@ async def _attempt(outgoing: Outgoing, ways: Ways, http: "httpx.AsyncClient") ->
     try:
         async with asyncio.timeout(LONGEST_ATTEMPT):
             async with http.stream("POST", outgoing.webhook.url, content=body, headers=headers) as answer:
-                return answer.is_success, f"{answer.status_code} {answer.reason_phrase}".strip()
+                said = f"{answer.status_code} {answer.reason_phrase}".strip()
+                return Ended(answer.is_success, in_one_line(said))
     except TimeoutError:
-        return False, f"no answer within {LONGEST_ATTEMPT:g} s"
+        return Ended(False, f"no answer within {LONGEST_ATTEMPT:g} s")
     except (httpx.HTTPError, httpx.InvalidURL) as problem:
-        return False, f"{type(problem).__name__}: {problem}"
+        return Ended(False, in_one_line(f"{type(problem).__name__}: {problem}"))
 
 
-def _after(outgoing: Outgoing, accepted: bool, now: datetime) -> tuple[DeliveryState, datetime]:
+def _after(outgoing: Outgoing, ended: Ended, now: datetime) -> tuple[DeliveryState, datetime]:
     """What it is then, and when it ended or is sent next: pauses double from one attempt to the next."""
-    if accepted:
+    if ended.accepted:
         return DeliveryState.DELIVERED, now
-    if outgoing.attempt >= MOST_ATTEMPTS:
+    if ended.is_last or outgoing.attempt >= MOST_ATTEMPTS:
         return DeliveryState.FAILED, now
     doubled = FIRST_PAUSE * 2 ** min(outgoing.attempt - 1, 10)
     return DeliveryState.WAITING, now + min(doubled, LONGEST_PAUSE)

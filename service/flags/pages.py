@@ -19,12 +19,11 @@ from service.groups.words import place_in_words
 from service.models.records import Scope
 from service.pages.waiting import WaitingMatter, waiting_for
 from service.people.admission import PersonOf
-from service.people.dependencies import SEE_OTHER, By, Number, OptionalText, StorageOf, Why
+from service.people.dependencies import SEE_OTHER, By, FormLines, FormText, Number, StorageOf, Why
 from service.queue.store import PendingWork
 from service.queue.words import pending_in_words
 from service.sessions.words.conditions import FIT, NOT_JUDGED, UNDECIDED, UNFIT, Condition
 from service.web.dependencies import Now, Reading
-from service.web.fields import NO_NUL
 from service.web.list_view import Shown
 from service.web.render import render
 
@@ -164,7 +163,7 @@ Chosen = Annotated[list[Annotated[int, Field(ge=1, le=2_000_000_000)]], Form(min
 """Flags that were ticked."""
 Asking = Annotated[FlagsView, Query()]
 """The view that a form was sent from, and that comes back."""
-To = Annotated[str, Form(max_length=200, pattern=NO_NUL)]
+To = FormText
 """Login or name; empty for nobody."""
 
 
@@ -182,7 +181,7 @@ def show_flags(request: Request, store: Reading, person: PersonOf, now: Now, vie
 
 @router.post("/assign")
 def assign_chosen(
-    flag: Chosen, by: By, storage: StorageOf, now: Now, *, to: To = "", why: OptionalText = "", view: Asking
+    flag: Chosen, by: By, storage: StorageOf, now: Now, *, to: To = "", why: FormLines = "", view: Asking
 ) -> RedirectResponse:
     """Several are given to somebody."""
     assign_flags(storage, flag, Assignment(to, by, why), now)
@@ -190,9 +189,7 @@ def assign_chosen(
 
 
 @router.post("/{id}/assign")
-def assign(
-    id: Number, by: By, storage: StorageOf, now: Now, *, to: To = "", why: OptionalText = ""
-) -> RedirectResponse:
+def assign(id: Number, by: By, storage: StorageOf, now: Now, *, to: To = "", why: FormLines = "") -> RedirectResponse:
     """One is given to somebody."""
     return _back(assign_flag(storage, id, Assignment(to, by, why), now))
 

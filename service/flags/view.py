@@ -12,7 +12,8 @@ from service.flags.store import FlagQuery, Flags
 from service.kit.person import Person
 from service.people.store import Accounts
 from service.storage.queries import Store
-from service.web.list_view import Asked, ListView, Words, one_of
+from service.web.fields import Sought
+from service.web.list_view import ListView, Words, one_of
 
 ME, OF_NOBODY = "me", "nobody"
 """What may stand in an address instead of a name."""
@@ -54,7 +55,7 @@ def _forward(asked: str) -> str:
     return asked.removeprefix("-")
 
 
-FlagNumber = Annotated[Asked, AfterValidator(_number)]
+FlagNumber = Annotated[Sought, AfterValidator(_number)]
 
 
 class FlagsView(ListView):
@@ -63,11 +64,11 @@ class FlagsView(ListView):
     PATH = "/flags"
     ORDERS: ClassVar = {WORST: "worst first", NEWEST: "newest first", OLDEST: "oldest first"}
     q: Words = ""
-    matter: Annotated[Asked, one_of(set(Matter))] = ""
-    state: Annotated[Asked, one_of(STATES)] = ""
-    assigned: Asked = ""
+    matter: Annotated[Sought, one_of(set(Matter))] = ""
+    state: Annotated[Sought, one_of(STATES)] = ""
+    assigned: Sought = ""
     """A name or a login, `me` or `nobody`."""
-    sort: Annotated[Asked, AfterValidator(_forward), Field(validate_default=True)] = ""
+    sort: Annotated[Sought, AfterValidator(_forward), Field(validate_default=True)] = ""
     after: FlagNumber = ""
     before: FlagNumber = ""
 

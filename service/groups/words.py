@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from hashlib import sha256
 
 from estimator.groups import GroupFinding
 from estimator.groups.fixed import EMPIRICAL
@@ -26,6 +27,8 @@ FAILED = (
 )
 LONGEST_PLACE = 200
 """Characters that a flag keeps of its place."""
+LONGEST_SUBJECT = 100
+"""Those of a name in it."""
 SHARED = "They share structure that no known cause explains."
 SOUND = "Nothing wrong found."
 UNKNOWN = "Structure that no known cause explains."
@@ -79,8 +82,13 @@ def place_in_words(place: str, subject: str) -> str:
 
 
 def lasting_place(scope: Scope, subject: str, finding: GroupFinding | None = None) -> str:
-    """``stand ODG-1: beta eccentricity``: where a flag on it is; without a finding how those of a group begin."""
-    owner = f"{scope} {subject}: "
+    """``stand ODG-1: beta eccentricity``: where a flag on it is; without a finding how those of a group begin.
+
+    Of a long name the end becomes a hash, so that the effect has room.
+    """
+    is_long = len(subject) > LONGEST_SUBJECT
+    name = f"{subject[:LONGEST_SUBJECT]}… {sha256(subject.encode()).hexdigest()[:8]}" if is_long else subject
+    owner = f"{scope} {name}: "
     return owner if finding is None else f"{owner}{cause_on(finding.cause, finding.sensors)}"[:LONGEST_PLACE]
 
 

@@ -13,6 +13,7 @@ from estimator.session import CalibrationSession
 from service.ingest import read_upload
 from service.ingest.digest import readings_digest
 from service.ingest.names import LONGEST_NAME, fault_of_name, fault_of_serial, plain_name
+from service.kit.text import fault_of_text, with_plain_ends
 
 LONGEST_NOTES = 20_000
 """Characters of notes and operator: some pages, so that no upload fills the database."""
@@ -104,9 +105,7 @@ def _fault(text: str) -> str | None:
     if len(text) > LONGEST_NOTES:
         parts = {"length": len(text), "longest_notes": LONGEST_NOTES}
         return say("is {length} characters long; at most {longest_notes} are kept", **parts)
-    if "\x00" in text or any("\ud800" <= c <= "\udfff" for c in text):
-        return "contains characters that are not text (NUL or half of a surrogate pair); remove them"
-    return None
+    return fault_of_text(with_plain_ends(text))
 
 
 def _date_problems(session: CalibrationSession, now: datetime) -> list[Problem]:

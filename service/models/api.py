@@ -19,7 +19,7 @@ from service.records.recalibrate import recompute_beside
 from service.sessions.decision import Verdict
 from service.sessions.records import DiagnosisState
 from service.web.dependencies import Now, Reading
-from service.web.fields import Body, LongText, Name, Number, Paged, Text, WindowOf
+from service.web.fields import Body, LongText, Name, Number, Paged, Sought, WindowOf
 from service.web.problem_document import errors
 
 
@@ -156,7 +156,7 @@ def list_models(
     store: Reading,
     window: WindowOf,
     scope: Annotated[Scope | None, Query(description="Only models of units, of unit types or of stands.")] = None,
-    subject: Annotated[Text | None, Query(description="Only of this unit, unit type or stand.")] = None,
+    subject: Annotated[Sought | None, Query(description="Only of this unit, unit type or stand.")] = None,
 ) -> ModelPage:
     """Accepted causes, newest first."""
     revisions = Models(store).page(ModelQuery(scope, subject, window.offset, window.limit))

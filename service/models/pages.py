@@ -22,13 +22,12 @@ from service.models.rules import in_force, pooled_of
 from service.models.sections import gain_of
 from service.models.store import Models, Recomputations
 from service.models.words import left_in_words, moved_in_words, progress_of
-from service.people.dependencies import SEE_OTHER, By, Number, Why
+from service.people.dependencies import SEE_OTHER, By, FormLines, FormText, Number, Why
 from service.records.dependencies import ReceptionOf
 from service.records.models import accept_lasting, withdraw_model
 from service.records.recalibrate import recompute_beside
 from service.sessions.words.conditions import Condition, condition_of
 from service.web.dependencies import Now, Reading
-from service.web.fields import NO_NUL
 from service.web.render import SOONEST, render
 
 SUBJECT_PATHS = {Scope.UNIT: "/units/", Scope.UNIT_TYPE: "/unit-types/", Scope.STAND: "/stands/"}
@@ -153,7 +152,6 @@ def _unit(recomputation: Recomputation) -> RecomputedRow:
 
 
 router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
-Plain = Annotated[str, Form(max_length=200, pattern=NO_NUL)]
 
 
 @router.get("/models/{id}")
@@ -170,11 +168,11 @@ def accept(
     now: Now,
     *,
     level: Annotated[Level, Form()],
-    name: Plain,
-    cause: Plain,
+    name: FormText,
+    cause: FormText,
     sensors: Annotated[list[str], Form(default_factory=list, max_length=1000)],
     by: By,
-    note: Annotated[str, Form(max_length=2000, pattern=NO_NUL)] = "",
+    note: FormLines = "",
 ) -> RedirectResponse:
     """Accepts what a group of sessions shows, and shows what that moves."""
     with reception.storage.database.reading() as store:

@@ -3,7 +3,6 @@
 Written line by line: a library that builds every property as an object takes thirty times as long for a fleet.
 """
 
-import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from datetime import UTC, date, datetime, timedelta
@@ -17,6 +16,7 @@ from service.fleet.records import FleetQuery, Order
 from service.fleet.store import Fleet
 from service.judging.records import Usable
 from service.judging.usable_reading import usable_of
+from service.kit.text import without_control
 from service.outlook.changes import END_OF_TIME
 from service.web.dependencies import Now, Reading
 from service.web.problem_document import errors
@@ -29,8 +29,6 @@ HEAD = (
     "METHOD:PUBLISH",
     "X-WR-CALNAME:Calibrations due",
 )
-NOT_TEXT = re.compile("[\x00-\x09\x0b-\x1f\x7f]")
-"""Characters that no text of a calendar can hold (section 3.1, CONTROL), and tabs."""
 ESCAPED = str.maketrans({"\\": r"\\", ";": r"\;", ",": r"\,", "\n": r"\n"})
 """Section 3.3.11."""
 LONGEST = 75
@@ -70,7 +68,7 @@ def _event(due: DueDay, now: str) -> Iterator[str]:
 
 
 def _text(value: str) -> str:
-    return NOT_TEXT.sub("", value).translate(ESCAPED)
+    return without_control(value).translate(ESCAPED)
 
 
 def _folded(line: str) -> bytes:

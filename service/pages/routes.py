@@ -166,7 +166,7 @@ def show_session(
         report,
         made,
         traceability_of(store, report.session),
-        remedies=remedies_of(storage, id, report.states) if questioned else Remedies(),
+        remedies=remedies_of(store, storage.files, id, report.states) if questioned else Remedies(),
         failed=failed,
         follow=None if made or failed else follow_seconds(report.session.uploaded_at, now, settings.diagnosis_workers),
         model=model_as_of(Models(store).of_session(id), report.session.revision),

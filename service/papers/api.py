@@ -26,11 +26,11 @@ from service.papers.records import NOT_STATED, Signature
 from service.papers.schemas import CorrectionDocument, NewSignature
 from service.papers.status import status_paper, status_pdf
 from service.people.admission import PersonOf, attempt_of
-from service.people.dependencies import StorageOf
+from service.people.dependencies import PasswordTurn, StorageOf
 from service.settings import Settings
 from service.storage.queries import Store
 from service.web.dependencies import LanguageOf, Now, Reading, SettingsOf
-from service.web.fields import TEXT, Name, Serial, SessionId, Text
+from service.web.fields import Serial, SessionId, Sought, Text
 from service.web.files import as_file
 from service.web.problem_document import errors
 
@@ -45,7 +45,7 @@ Format = Annotated[
 ]
 CertificateNumber = Annotated[
     str,
-    Path(pattern=TEXT, max_length=60, description="Number of the certificate.", examples=["3f9a0c5be1d24786aa10-0-1"]),
+    Path(max_length=60, description="Number of the certificate.", examples=["3f9a0c5be1d24786aa10-0-1"]),
 ]
 
 
@@ -88,7 +88,7 @@ def read_approved_certificate(
 
 @router.post("/{id}/certificate/signatures", status_code=201, responses=errors(400, 401, 403, 404, 409, 422, 429, 507))
 def sign_certificate(
-    id: SessionId, new: NewSignature, desk: DeskOf, person: PersonOf, now: Now, request: Request
+    id: SessionId, new: NewSignature, _: PasswordTurn, desk: DeskOf, person: PersonOf, now: Now, request: Request
 ) -> Signature:
     """Sign the session's certificate: that you reviewed it, or that it is approved.
 
@@ -123,7 +123,7 @@ def print_certificates(
     desk: DeskOf,
     now: Now,
     person: PersonOf,
-    session: Annotated[list[Name], Query(min_length=1, max_length=MOST, description="Ids of sessions.")],
+    session: Annotated[list[Sought], Query(min_length=1, max_length=MOST, description="Ids of sessions.")],
     *,
     by: Annotated[Text, Query(description="Who issues them; kept with their numbers.")] = "",
 ) -> Response:

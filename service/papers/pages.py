@@ -12,19 +12,19 @@ from service.kit.measures import day_of
 from service.kit.person import Person
 from service.papers.changes import Signing
 from service.papers.dependencies import DeskOf
-from service.papers.desk import Papers, SignedIssue, papers_of, sign
+from service.papers.desk import Desk, Papers, SignedIssue, papers_of, sign
 from service.papers.records import Meaning, Signature
 from service.papers.words import STATES, done_by, moment_of
 from service.people.admission import PersonOf, attempt_of
-from service.people.dependencies import NOT_BLANK, SEE_OTHER, By, Key, StorageOf
+from service.people.dependencies import SEE_OTHER, By, FormLines, FormText, Key, PasswordTurn, StorageOf
 from service.people.secret import LONGEST
 from service.records.unit_changes import set_customer
 from service.sessions.records import StoredSession
 from service.sessions.states import RecordState
 from service.sessions.store import Sessions
 from service.units.records import Customer
-from service.web.dependencies import Now, Reading
-from service.web.fields import NO_NUL
+from service.web.dependencies import Now
+from service.web.fields import Name
 from service.web.render import render
 
 RELEASED, REVIEWED, OPEN = "Approved", "Reviewed, not approved yet", "Not signed yet"
@@ -135,20 +135,26 @@ router = APIRouter(include_in_schema=False)
 
 
 @router.get("/sessions/{id}/certificate")
-def show_certificate(request: Request, id: Key, store: Reading, desk: DeskOf, person: PersonOf) -> HTMLResponse:
+def show_certificate(request: Request, id: Key, desk: DeskOf, person: PersonOf) -> HTMLResponse:
     """Every issue of the session's certificate, and who signed it."""
-    four_eyes = desk.rules.four_eyes
-    page = certificate_page(Sessions(store).get(id), papers_of(desk, id), person, four_eyes=four_eyes)
-    return render(request, "certificate.html", page)
+    return render(request, "certificate.html", _page(desk, id, person))
+
+
+def _page(desk: Desk, id: str, person: Person, wrong: str = "") -> CertificatePage:
+    papers = papers_of(desk, id)
+    with desk.storage.database.reading() as store:
+        session = Sessions(store).get(id)
+    return certificate_page(session, papers, person, four_eyes=desk.rules.four_eyes, wrong=wrong)
 
 
 @router.post("/sessions/{id}/certificate/signatures")
 def take_signature(
     request: Request,
     id: Key,
-    number: Annotated[str, Form(max_length=60, pattern=NOT_BLANK)],
+    number: Annotated[Name, Form(max_length=60)],
     meaning: Annotated[Meaning, Form()],
-    password: Annotated[str, Form(max_length=LONGEST, pattern=NO_NUL)],
+    password: Annotated[str, Form(max_length=LONGEST)],
+    _: PasswordTurn,
     *,
     desk: DeskOf,
     person: PersonOf,
@@ -159,11 +165,7 @@ def take_signature(
     try:
         sign(desk, signing, attempt_of(request, person.login), now)
     except SignInError as wrong:
-        papers, four_eyes = papers_of(desk, id), desk.rules.four_eyes
-        with desk.storage.database.reading() as store:
-            session = Sessions(store).get(id)
-        page = certificate_page(session, papers, person, four_eyes=four_eyes, wrong=wrong.detail)
-        return render(request, "certificate.html", page, wrong.status)
+        return render(request, "certificate.html", _page(desk, id, person, wrong.detail), wrong.status)
     return RedirectResponse(f"/sessions/{id}/certificate", SEE_OTHER)
 
 
@@ -174,8 +176,8 @@ def change_customer(
     storage: StorageOf,
     now: Now,
     *,
-    name: Annotated[str, Form(max_length=200, pattern=NO_NUL)] = "",
-    address: Annotated[str, Form(max_length=2000, pattern=NO_NUL)] = "",
+    name: FormText = "",
+    address: FormLines = "",
 ) -> RedirectResponse:
     """Records for whom the unit is calibrated."""
     set_customer(storage, serial, Customer(name.strip(), address.strip()), now, who=by)

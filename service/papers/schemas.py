@@ -8,7 +8,7 @@ from estimator.json_object import Json
 from service.judging.covered import CoveredTemperatures
 from service.papers.records import Meaning
 from service.sessions.decision import Verdict
-from service.web.fields import TEXT, Body, LongText, NonBlankName, Text
+from service.web.fields import Body, LongText, Name, Text
 
 
 class BlockCorrectionSchema(BaseModel):
@@ -70,6 +70,6 @@ class NewCustomer(Body):
 class NewSignature(Body):
     """A name that is to stand under a certificate."""
 
-    number: NonBlankName = Field(description="Of the certificate that you read; one that is not the latest is refused.")
+    number: Name = Field(description="Of the certificate that you read; one that is not the latest is refused.")
     meaning: Meaning = Field(description="A certificate is reviewed first, and approved by somebody else.")
-    password: str = Field(max_length=1000, pattern=TEXT, description="Of your account, asked again.")
+    password: str = Field(max_length=1000, description="Of your account, asked again.")

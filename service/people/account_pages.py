@@ -19,20 +19,19 @@ from service.people.changes import (
     change_password,
     link_of,
     make_token,
-    require_may_revoke,
     require_no_token,
     revoke_token,
     sign_in,
     sign_out,
     use_link,
 )
-from service.people.dependencies import SEE_OTHER, Number, StorageOf
+from service.people.dependencies import SEE_OTHER, FormName, FormText, Number, PasswordTurn, StorageOf
 from service.people.secret import LONGEST, SHORTEST
 from service.people.store import Accounts, Tokens
 from service.settings import Settings
 from service.web.application import application_of
 from service.web.dependencies import Now, Reading, SettingsOf
-from service.web.fields import NO_NUL
+from service.web.fields import Sought
 from service.web.render import render
 
 
@@ -101,10 +100,9 @@ def _line(token: Token, now: datetime) -> TokenLine:
 
 
 router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
-Login = Annotated[str, Form(max_length=200, pattern=NO_NUL)]
-Password = Annotated[str, Form(max_length=LONGEST, pattern=NO_NUL)]
+Login = Annotated[Sought, Form()]
+Password = Annotated[str, Form(max_length=LONGEST)]
 Secret = Annotated[str, Path(max_length=100, pattern=r"^[A-Za-z0-9_-]+$")]
-Label = Annotated[str, Form(min_length=1, max_length=200, pattern=NO_NUL)]
 
 
 @router.get("/sign-in")
@@ -118,6 +116,7 @@ def take_sign_in(
     request: Request,
     login: Login,
     password: Password,
+    _: PasswordTurn,
     storage: StorageOf,
     settings: SettingsOf,
     now: Now,
@@ -145,11 +144,12 @@ def take_link(
     request: Request,
     secret: Secret,
     password: Password,
+    _: PasswordTurn,
     storage: StorageOf,
     settings: SettingsOf,
     now: Now,
     login: Login = "",
-    name: Login = "",
+    name: FormText = "",
 ) -> Response:
     """Sets the password and signs in."""
     owner = link_of(storage, secret, now)
@@ -174,7 +174,7 @@ def show_account(request: Request, store: Reading, person: PersonOf, now: Now) -
 
 @router.post("/account/password")
 def take_password(
-    request: Request, old: Password, new: Password, storage: StorageOf, person: PersonOf, now: Now
+    request: Request, old: Password, new: Password, _: PasswordTurn, storage: StorageOf, person: PersonOf, now: Now
 ) -> RedirectResponse:
     """Changes the password; browsers must sign in again, and tokens are revoked. Guessing in an open browser is limited
     too."""
@@ -186,7 +186,7 @@ def take_password(
 @router.post("/account/tokens")
 def take_token(
     request: Request,
-    label: Label,
+    label: FormName,
     role: Annotated[Role, Form()],
     days: Annotated[int, Form(ge=1, le=366)],
     storage: StorageOf,
@@ -205,9 +205,7 @@ def take_token(
 @router.post("/account/tokens/{id}/revoke")
 def take_back(id: Number, storage: StorageOf, person: PersonOf, now: Now) -> RedirectResponse:
     """Revokes a token."""
-    with storage.database.reading() as store:
-        require_may_revoke(person, Tokens(store).get(id))
-    revoke_token(storage, id, now, who=person.signs("admin"))
+    revoke_token(storage, id, person, now, who=person.signs("admin"))
     return RedirectResponse("/account", SEE_OTHER)
 
 

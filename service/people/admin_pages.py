@@ -11,12 +11,12 @@ from fastapi.responses import HTMLResponse, RedirectResponse
 from service.kit.person import UNNAMED, Account, Role
 from service.people.admission import PersonOf
 from service.people.changes import AccountChange, add_account, change_account, make_link, require_no_token
-from service.people.dependencies import SEE_OTHER, StorageOf
+from service.people.dependencies import SEE_OTHER, FormText, StorageOf
 from service.people.store import Accounts
 from service.storage.audit import Audit, AuditCheck, AuditLine
 from service.web.application import application_of
 from service.web.dependencies import Now, Reading
-from service.web.fields import NO_NUL
+from service.web.fields import Sought
 from service.web.render import render
 
 
@@ -61,8 +61,7 @@ def _plain(value: object) -> str:
 router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
 AUDIT_LINES = 20
 """On a page."""
-Login = Annotated[str, Path(max_length=60, pattern=NO_NUL)]
-Written = Annotated[str, Form(max_length=200, pattern=NO_NUL)]
+Login = Annotated[Sought, Path(max_length=60)]
 
 
 @router.get("/accounts")
@@ -74,12 +73,12 @@ def show_accounts(request: Request, store: Reading) -> HTMLResponse:
 @router.post("/accounts")
 def take_account(
     request: Request,
-    login: Written,
+    login: FormText,
     role: Annotated[Role, Form()],
     storage: StorageOf,
     person: PersonOf,
     now: Now,
-    name: Written = "",
+    name: FormText = "",
 ) -> HTMLResponse:
     """Makes an account and shows the link with which its owner chooses a password."""
     require_no_token(person)
@@ -90,7 +89,7 @@ def take_account(
 @router.post("/accounts/{login}")
 def change(
     login: Login,
-    name: Written,
+    name: FormText,
     role: Annotated[Role, Form()],
     storage: StorageOf,
     person: PersonOf,
@@ -114,7 +113,7 @@ def show_audit(
     request: Request,
     store: Reading,
     before: Annotated[int | None, Query(ge=1, le=2_000_000_000)] = None,
-    subject: Annotated[str, Query(max_length=200, pattern=NO_NUL)] = "",
+    subject: Annotated[Sought, Query()] = "",
     check: bool = False,
 ) -> HTMLResponse:
     """Who did what, the newest first."""

@@ -17,7 +17,6 @@ from service.people.changes import (
     change_account,
     make_link,
     make_token,
-    require_may_revoke,
     require_no_token,
     revoke_token,
 )
@@ -25,10 +24,10 @@ from service.people.dependencies import StorageOf
 from service.people.store import Accounts, Tokens
 from service.storage.audit import Audit, AuditCheck, AuditLine
 from service.web.dependencies import Now, Reading
-from service.web.fields import TEXT, Body, Limit, NonBlankName, Number, Text
+from service.web.fields import Body, Limit, Name, Number, Sought, Text
 from service.web.problem_document import errors
 
-Login = Annotated[str, Path(pattern=TEXT, max_length=60, description="The account's login.", examples=["k.ito"])]
+Login = Annotated[Sought, Path(max_length=60, description="The account's login.", examples=["k.ito"])]
 
 
 class MeSchema(BaseModel):
@@ -51,7 +50,7 @@ class AccountList(BaseModel):
 class NewAccount(Body, json_schema_extra={"example": {"login": "k.ito", "name": "K. Ito", "role": "crew"}}):
     """Somebody who is to sign in."""
 
-    login: NonBlankName = Field(
+    login: Name = Field(
         description="Letters a to z, digits and . _ @ -; at most 60. Capitals are made small.",
         json_schema_extra={"pattern": r"^[A-Za-z0-9][A-Za-z0-9._@-]{0,59}$"},
     )
@@ -82,7 +81,7 @@ class TokenList(BaseModel):
 class NewToken(Body, json_schema_extra={"example": {"label": "bench 3", "role": "crew", "days": 90}}):
     """A token that is to be made for the one who asks."""
 
-    label: NonBlankName = Field(description="What it is for.")
+    label: Name = Field(description="What it is for.")
     role: Role = Field(description="What it may do; at most what its account may.")
     days: int = Field(default=90, ge=1, le=366, description="How long it holds.")
 
@@ -163,11 +162,10 @@ def create_token(new: NewToken, storage: StorageOf, now: Now, person: PersonOf) 
 
 
 @router.delete("/tokens/{id}", status_code=204, responses=errors(403, 404, 422))
-def delete_token(id: Number, storage: StorageOf, store: Reading, now: Now, person: PersonOf) -> None:
+def delete_token(id: Number, storage: StorageOf, now: Now, person: PersonOf) -> None:
     """Nobody gets in with the token any more; it stays listed. Others' tokens need an administrator who is signed in: a
     token revokes only itself."""
-    require_may_revoke(person, Tokens(store).get(id))
-    revoke_token(storage, id, now, who=person.signs(UNNAMED))
+    revoke_token(storage, id, person, now, who=person.signs(UNNAMED))
 
 
 @router.get("/audit", responses=errors(422))
@@ -175,7 +173,7 @@ def read_audit(
     store: Reading,
     limit: Limit = 100,
     before: Annotated[int | None, Query(ge=1, le=2_000_000_000, description="Lines before this one.")] = None,
-    subject: Annotated[Text | None, Query(description="Only what was done to this.")] = None,
+    subject: Annotated[Sought | None, Query(description="Only what was done to this.")] = None,
 ) -> AuditPage:
     """The audit trail, newest first."""
     lines = Audit(store).page(limit, before, subject)
@@ -185,7 +183,7 @@ def read_audit(
 @router.get("/audit/check", responses=errors(422))
 def check_audit(
     store: Reading,
-    expect: Annotated[Text, Query(description="A last hash that was noted before; it must still be there.")] = "",
+    expect: Annotated[Sought, Query(description="A last hash that was noted before; it must still be there.")] = "",
 ) -> AuditCheck:
     """Work out the chain of the whole trail again. Note the last hash elsewhere: it shows later that none was cut."""
     return Audit(store).check(expect)

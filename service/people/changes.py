@@ -15,8 +15,11 @@ from datetime import datetime, timedelta
 from hashlib import sha256
 
 from estimator.errors import Problem, problem_at
+from estimator.message import say
 from service.errors import ConflictError, ForbiddenError, RefusedError, SignInError, TooOftenError
+from service.ingest.names import LONGEST_NAME
 from service.kit.person import Account, Person, Role, Token
+from service.kit.text import OF_A_LINE, fault_of_text
 from service.people.secret import TOKEN_PREFIX, fault_of, hashed, is_password, new_secret, stored_hash
 from service.people.store import Accounts, Attempts, SignIns, Tokens
 from service.storage import Storage
@@ -49,13 +52,24 @@ def require_login(login: str) -> str:
     return lower
 
 
+def require_name(field: str, text: str) -> str:
+    """The text without spaces around it; RefusedError where it is no name."""
+    name = text.strip()
+    fault = fault_of_text(name, OF_A_LINE)
+    if len(name) > LONGEST_NAME:
+        fault = say("is longer than {longest} characters", longest=LONGEST_NAME)
+    if fault is not None:
+        raise RefusedError("The name cannot be used.", (Problem(field, fault),))
+    return name
+
+
 def add_account(storage: Storage, login: str, name: str, role: Role, now: datetime, *, who: str) -> Account:
     """Makes an account without a password: a link lets its owner choose one."""
     lower = require_login(login)
+    shown_name = require_name("name", name) or lower
     with storage.database.writing() as store:
         if not Accounts(store).any() and role is not Role.ADMIN:
             raise ConflictError("The first account must be an admin: from then on everybody has to sign in.")
-        shown_name = name.strip() or lower
         if not Accounts(store).add(lower, shown_name, role, now):
             raise ConflictError("There is an account {small} already.", small=repr(lower))
         Audit(store).write(now, who, "add account", lower, {"name": shown_name, "role": role})
@@ -67,7 +81,7 @@ def change_account(storage: Storage, login: str, change: AccountChange, now: dat
     with storage.database.writing() as store:
         Accounts(store).hold_admins()
         before = Accounts(store).get(login)
-        name = before.name if change.name is None else change.name.strip() or before.login
+        name = before.name if change.name is None else require_name("name", change.name) or before.login
         role = before.role if change.role is None else change.role
         is_active = before.is_active if change.is_active is None else change.is_active
         loses_admin = before.role is Role.ADMIN and before.is_active and not (role is Role.ADMIN and is_active)
@@ -300,7 +314,7 @@ def _owner(store: Store, secret: str, now: datetime) -> Account | None:
 def _first(store: Store, chosen: LinkForm, now: datetime) -> str:
     """The account of the person who set the service up."""
     login = require_login(chosen.login)
-    name = chosen.name.strip() or login
+    name = require_name("name", chosen.name) or login
     if not Accounts(store).add(login, name, Role.ADMIN, now):
         raise SignInError(SPENT)  # another link made it at the same moment: its password is not ours to set
     Audit(store).write(now, name, "add account", login, {"name": name, "role": Role.ADMIN})
@@ -322,7 +336,7 @@ def require_no_token(person: Person) -> None:
         raise ForbiddenError(OUTLIVES)
 
 
-def require_may_revoke(person: Person, token: Token) -> None:
+def _require_may_revoke(person: Person, token: Token) -> None:
     """ForbiddenError unless a token is the person's own, or an administrator asks; a token revokes only itself."""
     if token.login != person.login and not person.may(Role.ADMIN):
         raise ForbiddenError(OTHERS)
@@ -343,17 +357,18 @@ def make_token(
         if not account.is_active or not account.role.may(role):
             parts = {"login": account.login, "role": account.role, "wanted_role": role}
             raise ConflictError("{login} is {role} and cannot have a token for {wanted_role}.", **parts)
-        new = Token(0, account.login, label.strip() or "token", role, now, now + lifetime, None, None)
+        new = Token(0, account.login, require_name("label", label) or "token", role, now, now + lifetime, None, None)
         token = Tokens(store).add(account, new, stored_hash(secret))
         details = {"token": token.id, "label": token.label, "role": role, "until": token.expires_at.isoformat()}
         Audit(store).write(now, who, "make token", account.login, details)
     return token, secret
 
 
-def revoke_token(storage: Storage, id: int, now: datetime, *, who: str) -> Token:
-    """Revokes a token; again it changes nothing."""
+def revoke_token(storage: Storage, id: int, person: Person, now: datetime, *, who: str) -> Token:
+    """Revokes a token, where the person may; again it changes nothing."""
     with storage.database.writing() as store:
         token = Tokens(store).get(id)
+        _require_may_revoke(person, token)
         if token.revoked_at is None:
             Tokens(store).revoke(id, now)
             Audit(store).write(now, who, "revoke token", token.login, {"token": id, "label": token.label})

@@ -1,5 +1,6 @@
 """Dependencies of routes: both stores, with the sender's name in the audit trail."""
 
+from collections.abc import AsyncIterator
 from dataclasses import replace
 from typing import Annotated
 
@@ -7,9 +8,10 @@ from fastapi import Depends, Form, Path, Request
 
 from service.kit.person import Person
 from service.people.admission import PersonOf
+from service.people.turns import PasswordTurns
 from service.storage import Storage
 from service.web.application import application_of
-from service.web.fields import NO_NUL
+from service.web.fields import LongText, Name, Reason, Sought, Text
 
 CREW = "crew"
 """Default name of an uploader without an account."""
@@ -24,22 +26,29 @@ def _acting(storage: Storage, person: Person) -> Storage:
     return replace(storage, database=storage.database.acting(person.account))
 
 
+async def _turn(request: Request) -> AsyncIterator[None]:
+    async with application_of(request).part(PasswordTurns).one():
+        yield
+
+
+PasswordTurn = Annotated[None, Depends(_turn, scope="function")]
+"""A turn at hashing passwords, before the database is asked; BusyError where too many wait for one."""
 StorageOf = Annotated[Storage, Depends(_storage)]
 """Both stores, for flows that write."""
 
 SEE_OTHER = 303
 """Answer to a form, so that reloading its page sends nothing twice (RFC 9110)."""
-NOT_BLANK = r"^[^\x00]*\S[^\x00]*$"
-
-Key = Annotated[str, Path(max_length=200, pattern=r"^[^\x00]+$")]
+Key = Annotated[Sought, Path(min_length=1)]
 Number = Annotated[int, Path(ge=1, le=2_000_000_000)]
 
 
-def _by(person: PersonOf, by: Annotated[str, Form(max_length=200, pattern=NOT_BLANK)]) -> str:
+def _by(person: PersonOf, by: Annotated[Name, Form()]) -> str:
     return person.signs(by)
 
 
 By = Annotated[str, Depends(_by)]
 """A name: the account's, or as written where there are no accounts."""
-OptionalText = Annotated[str, Form(max_length=2000, pattern=NO_NUL)]
-Why = Annotated[str, Form(max_length=2000, pattern=NOT_BLANK)]
+FormName = Annotated[Name, Form()]
+FormText = Annotated[Text, Form()]
+FormLines = Annotated[LongText, Form()]
+Why = Annotated[Reason, Form()]

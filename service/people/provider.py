@@ -15,8 +15,10 @@ from pathlib import Path
 from typing import Protocol
 from urllib.parse import urlsplit
 
+from estimator.message import say
 from service.errors import ServiceError
 from service.kit.person import Role
+from service.kit.text import OF_A_LINE, fault_of_text
 from service.settings import Settings
 
 MODULE = "service.people.oidc.protocol"
@@ -55,6 +57,17 @@ class Journey:
 
     def _part(self, purpose: bytes) -> str:
         return hmac.new(self.secret.encode(), purpose, sha256).hexdigest()
+
+
+LONGEST_SUBJECT = 255
+"""Characters (OpenID Connect Core 1.0, section 2)."""
+
+
+def fault_of_subject(subject: str) -> str | None:
+    """What is wrong with the identifier of a person at the provider; None where nothing is."""
+    if len(subject) > LONGEST_SUBJECT:
+        return say("is longer than {longest} characters", longest=LONGEST_SUBJECT)
+    return fault_of_text(subject, OF_A_LINE, is_required=True)
 
 
 @dataclass(frozen=True)

@@ -6,11 +6,12 @@ from collections.abc import Iterator
 from datetime import datetime
 from itertools import count
 
+from estimator.errors import Problem
 from estimator.message import say
-from service.errors import ConflictError, ForbiddenError, SignInError
+from service.errors import ConflictError, ForbiddenError, RefusedError, SignInError
 from service.kit.person import Account, Role
 from service.people.changes import LAST_ADMIN, LOGIN, WRONG, begin
-from service.people.provider import Claims, Joining
+from service.people.provider import Claims, Joining, fault_of_subject
 from service.people.store import Accounts, Identities
 from service.storage import Storage
 from service.storage.audit import Audit
@@ -48,6 +49,9 @@ def _claimed(claims: Claims, joining: Joining) -> Role | None:
 
 def connect(storage: Storage, login: str, issuer: str, subject: str, now: datetime, *, who: str) -> Account:
     """Connects an existing account with a person at the provider."""
+    fault = fault_of_subject(subject)
+    if fault is not None:
+        raise RefusedError("The account cannot be connected.", (Problem("subject", fault),))
     with storage.database.writing() as store:
         account = Accounts(store).get(login)
         if not Identities(store).add(account, issuer, subject, now):

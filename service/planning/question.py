@@ -14,6 +14,7 @@ from estimator.results import ARCSEC
 from estimator.session import ACCELEROMETER, GYROSCOPE, Array, CalibrationSession, Sensor, Site, Stand, StandErrors
 from estimator.simulate import cone, stand_schedule
 from service.kit.measures import MEASURES
+from service.web.fields import Sought
 
 HALF_ANGLE = float(np.arccos(1 / np.sqrt(3)))
 """54.7°: three of the axes are orthogonal."""
@@ -57,7 +58,7 @@ class PlanQuestion(BaseModel):
 
     model_config = ConfigDict(frozen=True)
 
-    unit_type: Annotated[str | None, Field(max_length=200, pattern=r"^[^\x00]*$"), BeforeValidator(blank)] = Field(
+    unit_type: Annotated[Sought | None, BeforeValidator(blank)] = Field(
         None, description="A stored unit type whose sensors and tolerances are planned with, instead of a cone."
     )
     kind: Literal["accelerometer", "gyroscope"] = Field(
@@ -163,7 +164,7 @@ class ReadyQuestion(BaseModel):
     minutes: Annotated[Annotated[float, Field(ge=1, le=1440, allow_inf_nan=False)] | None, BeforeValidator(blank)] = (
         Field(None, description="How long the measurement will take, minutes; as the last session of the unit or type.")
     )
-    unit_type: Annotated[str | None, Field(max_length=200, pattern=r"^[^\x00]*$"), BeforeValidator(blank)] = Field(
+    unit_type: Annotated[Sought | None, BeforeValidator(blank)] = Field(
         None, description="A stored unit type by whose tolerances is judged; without it the one of the file's unit."
     )
     bias: Amount = Field(None, description="Tolerance of the bias, µg (gyros: °/h), instead of the type's.")

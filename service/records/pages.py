@@ -14,7 +14,7 @@ from estimator.errors import Problem
 from service.errors import RefusedError
 from service.kit.moments import in_utc
 from service.pages.unit.events import service_in_words
-from service.people.dependencies import NOT_BLANK, SEE_OTHER, By, Key, Number, OptionalText, StorageOf, Why
+from service.people.dependencies import SEE_OTHER, By, FormLines, FormName, FormText, Key, Number, StorageOf, Why
 from service.records.changes import (
     accept_session,
     choose_reference,
@@ -40,7 +40,6 @@ from service.uploads.correct import correct_session
 from service.uploads.receive import deriving
 from service.uploads.received import SentOf
 from service.web.dependencies import Now, Reading
-from service.web.fields import NO_NUL
 from service.web.render import render
 
 router = APIRouter(include_in_schema=False)
@@ -85,7 +84,7 @@ def correct(id: Key, by: By, reception: ReceptionOf, now: Now) -> RedirectRespon
 
 @router.post("/sessions/{id}/stand")
 def stand(
-    id: Key, session: Annotated[str, Form(max_length=200, pattern=NOT_BLANK)], by: By, why: Why,
+    id: Key, session: FormName, by: By, why: Why,
     reception: ReceptionOf, now: Now,
 ) -> RedirectResponse:  # fmt: skip
     """A session supersedes another one of the same moment."""
@@ -135,8 +134,8 @@ def add_service(
     now: Now,
     *,
     at: At = None,
-    sensor: Annotated[str, Form(max_length=200, pattern=NO_NUL)] = "",
-    note: Annotated[str, Form(max_length=2000, pattern=NO_NUL)] = "",
+    sensor: FormText = "",
+    note: FormLines = "",
     sure: Annotated[bool, Form()] = False,
 ) -> Response:
     """Records what was done to the unit; of a service before stored sessions it first shows what that changes."""
@@ -178,8 +177,6 @@ def _events(serial: str) -> RedirectResponse:
 
 MOST_TYPES = 500
 """Names that the form offers."""
-Short = Annotated[str, Form(max_length=200, pattern=NO_NUL)]
-Named = Annotated[str, Form(max_length=200, pattern=NOT_BLANK)]
 
 
 @dataclass(frozen=True)
@@ -202,8 +199,8 @@ def show_register(request: Request, store: Reading) -> HTMLResponse:
 
 @router.post("/register")
 def enter_unit(
-    serial: Named, unit_type: Named, by: By, storage: StorageOf, now: Now,
-    *, owner: Short = "", location: Short = "", custodian: Short = "", note: OptionalText = "",
+    serial: FormName, unit_type: FormName, by: By, storage: StorageOf, now: Now,
+    *, owner: FormText = "", location: FormText = "", custodian: FormText = "", note: FormLines = "",
 ) -> RedirectResponse:  # fmt: skip
     """Enters one unit."""
     texts = (text.strip() for text in (serial, unit_type, owner, location, custodian, note))
@@ -227,8 +224,8 @@ def import_units(request: Request, sent: SentOf, storage: StorageOf, now: Now) -
 
 @router.post("/units/{serial:path}/moves")
 def move(
-    serial: Key, location: Short, custodian: Short, by: By, storage: StorageOf, now: Now,
-    *, at: At = None, remark: OptionalText = "",
+    serial: Key, location: FormText, custodian: FormText, by: By, storage: StorageOf, now: Now,
+    *, at: At = None, remark: FormLines = "",
 ) -> RedirectResponse:  # fmt: skip
     """Records where a unit is and who has it."""
     move_unit(storage, serial, Move(location.strip(), custodian.strip(), remark), by, now, at=at)

@@ -1,10 +1,11 @@
 """Flow: units are entered in the register, move, are retired and put back into use; every step is kept.
 
 A unit may be entered before its first session: its type is then known by name only, and the first session says what it
-has. Nothing of a list is stored where anything in it is wrong.
+has. Nothing of a list is stored where anything in it is wrong; a right one is stored in pieces, so that nobody else who
+writes waits for the whole.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
@@ -21,8 +22,15 @@ from service.storage.queries import Store
 from service.types.rules import named_only
 from service.types.store import UnitTypes
 from service.units.records import CustodyStep, Move, NewEntry, Registered
+from service.units.register_file import named
 from service.units.store import Register, Units
 
+PIECE = 25
+"""Units that are stored in one transaction: a quarter of a second on a busy machine."""
+NOT_STORED = "The register cannot be changed so. Nothing was stored."
+STORED_IN_PART = (
+    "Somebody changed the register meanwhile: {stored} of {units} units are entered. Mend the rest and send it again."
+)
 NO_TYPE = "is missing: say the type of a unit that is not known yet"
 
 ACTIONS = {
@@ -58,21 +66,52 @@ class Entered:
 
 def enter(storage: Storage, entries: Sequence[NewEntry], entering: Entering) -> Entered:
     """Enters units, or changes what the register says of them; RefusedError with every problem by its row, then
-    nothing is stored."""
-    with storage.database.writing() as store:
-        serials = [entry.serial for entry in entries]
-        known, measured = Register(store).find(serials), Register(store).measured(serials)
-        problems = tuple(
-            Problem(problem.field, problem.message, row)
-            for row, entry in enumerate(entries, 1)
-            for problem in _problems(entry, known.get(entry.serial), is_measured=entry.serial in measured)
-        )
-        if problems:
-            raise RefusedError("The register cannot be changed so. Nothing was stored.", problems)
-        ordered = sorted(entries, key=lambda entry: entry.serial)
-        changed = sum(_enter(store, entry, known.get(entry.serial), entering) for entry in ordered)
-        new = sum(entry.serial not in known for entry in entries)
+    nothing is stored.
+
+    Where somebody else makes one of them wrong meanwhile, the pieces before it stay, and the same list sent again
+    changes nothing of them.
+    """
+    rows = sorted(enumerate(entries, 1), key=lambda numbered: numbered[1].serial)
+    with storage.database.reading() as store:
+        _known(store, rows, NOT_STORED)
+    new = changed = 0
+    for start in range(0, len(rows), PIECE):
+        piece = rows[start : start + PIECE]
+        with storage.database.writing() as store:
+            known = _known(store, piece, say(STORED_IN_PART, stored=start, units=len(rows)) if start else NOT_STORED)
+            _enter_types(store, piece, known, entering.now)
+            changed += sum(_enter(store, entry, known.get(entry.serial), entering) for _, entry in piece)
+            new += sum(entry.serial not in known for _, entry in piece)
     return Entered(new, changed - new, len(entries) - changed)
+
+
+def _enter_types(
+    store: Store, rows: Sequence[tuple[int, NewEntry]], known: Mapping[str, Registered], now: datetime
+) -> None:
+    """Adds the types that units get and that are not known yet."""
+    names = {
+        entry.unit_type for _, entry in rows if entry.unit_type and _has_other_type(entry, known.get(entry.serial))
+    }
+    for name in sorted(names):
+        UnitTypes(store).add_once(named_only(name), now)
+
+
+def _has_other_type(entry: NewEntry, known: Registered | None) -> bool:
+    return bool(entry.unit_type) and (known is None or entry.unit_type != known.unit_type)
+
+
+def _known(store: Store, rows: Sequence[tuple[int, NewEntry]], refusal: str) -> dict[str, Registered]:
+    """What is known of the units of some rows; RefusedError with every problem of theirs."""
+    serials = [entry.serial for _, entry in rows]
+    known, measured = Register(store).find(serials), Register(store).measured(serials)
+    problems = [
+        Problem(problem.field, problem.message, row)
+        for row, entry in sorted(rows, key=lambda numbered: numbered[0])
+        for problem in _problems(entry, known.get(entry.serial), is_measured=entry.serial in measured)
+    ]
+    if problems:
+        raise RefusedError(refusal, named(problems))
+    return known
 
 
 def _problems(entry: NewEntry, known: Registered | None, *, is_measured: bool) -> list[Problem]:
@@ -90,8 +129,7 @@ def _problems(entry: NewEntry, known: Registered | None, *, is_measured: bool) -
 def _enter(store: Store, entry: NewEntry, known: Registered | None, entering: Entering) -> bool:
     if known is not None and known.registered_at is not None and not _differences(entry, known):
         return False
-    if entry.unit_type and (known is None or entry.unit_type != known.unit_type):
-        UnitTypes(store).add_once(named_only(entry.unit_type), entering.now)
+    if entry.unit_type and _has_other_type(entry, known):
         Units(store).add_once(entry.serial, entry.unit_type, simulated=False)
         Units(store).begin(entry.serial, entry.unit_type, simulated=False)
     unit = Units(store).hold(entry.serial)
@@ -126,7 +164,7 @@ def move_unit(
     when = at or now
     if when > now + CLOCK_LEEWAY:
         fault = say("is in the future ({at}); record what has been done", at=f"{when:%Y-%m-%d}")
-        raise RefusedError("The register cannot be changed so. Nothing was stored.", (Problem("at", fault),))
+        raise RefusedError(NOT_STORED, (Problem("at", fault),))
     with storage.database.writing() as store:
         unit = Units(store).hold(serial)
         was = Register(store).get(serial)

@@ -19,6 +19,9 @@ from service.kit.answer import answer
 from service.storage.queries import Queries, Store
 from service.storage.tables import Base
 
+ACCOUNT = String(300).with_variant(String(260), "sqlite")
+"""A login, and the label of a token in words: 268 characters at most. SQLite holds no text to its length."""
+
 
 class AuditRow(Base):
     """Who did what when, with a hash of the line and the previous one; the database refuses changes."""
@@ -27,7 +30,7 @@ class AuditRow(Base):
     id: Mapped[int] = mapped_column(primary_key=True)
     at: Mapped[datetime] = mapped_column(index=True)
     who: Mapped[str]
-    account: Mapped[str] = mapped_column(String(260), server_default="")
+    account: Mapped[str] = mapped_column(ACCOUNT, server_default="")
     action: Mapped[str] = mapped_column(String(40))
     subject: Mapped[str]
     details: Mapped[Json]

@@ -1,14 +1,20 @@
-"""The register as a table: read from CSV, with every fault by its row and column."""
+"""The register as a table: read from CSV, with every fault by its row and column.
 
-from collections.abc import Sequence
-from typing import Any
+Separators are counted before the table is cut, and it is cut row by row: what it may hold is known from its bytes.
+"""
+
+import csv
+import io
+import re
+from collections.abc import Mapping, Sequence
+from itertools import islice
 
 from estimator.errors import Problem, problem_at
-from estimator.message import joined, say
+from estimator.message import joined, say, say_count
 from service.errors import RefusedError
 from service.ingest.names import plain_name
-from service.kit.libraries import pl
 from service.kit.printable import printable
+from service.kit.text import fault_of_text, with_plain_ends
 from service.units.records import NewEntry
 
 COLUMNS = ("serial", "unit_type", "owner", "location", "custodian", "note")
@@ -16,64 +22,71 @@ COLUMNS = ("serial", "unit_type", "owner", "location", "custodian", "note")
 LEFT = ("retired_on",)
 """In what is exported; it is left as it is."""
 MOST_ROWS = 2_000
-"""More would hold up everybody who writes."""
+MOST_COLUMNS = 50
+"""So many that a table may have others beside those of the register, which are named in its refusal."""
+MOST_CELLS = MOST_ROWS * MOST_COLUMNS
+MOST_PROBLEMS = 500
+"""That are named; nobody mends more before trying again."""
 LONGEST = {"note": 2000}
 SHORT = 200
 """Characters of any other field."""
 SEPARATORS = ",;\t"
-QUOTED = ("'=", "'+", "'-", "'@")
+QUOTED = re.compile(r"(^|;)'(?=[=+\-@])")
 """How an export writes what a spreadsheet would take for a formula."""
 
 
 def read_register(content: bytes, filename: str) -> tuple[NewEntry, ...]:
     """The units of a table; RefusedError with every problem where it cannot be used."""
-    rows = _rows(content, filename)
-    problems = [*_of_columns(rows[0] if rows else {}), *_of_rows(rows)]
+    headings, rows = _table(content, filename)
+    problems = [*_of_columns(headings), *_of_rows(headings, rows)]
     if not rows:
         problems = [Problem("file", "has no rows below its headings")]
     if problems:
         raise _refused(filename, problems)
-    return tuple(NewEntry(**{name: _cell(row[name]) for name in COLUMNS if name in row}) for row in rows)
+    stated = [dict(zip(headings, row, strict=False)) for row in rows]
+    return tuple(NewEntry(**{name: _cell(row[name]) for name in COLUMNS if name in row}) for row in stated)
 
 
-def _rows(content: bytes, filename: str) -> list[dict[str, Any]]:
+def _table(content: bytes, filename: str) -> tuple[list[str], list[list[str]]]:
+    """Headings and rows."""
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as fault:
         raise _refused(filename, [Problem("file", "is not UTF-8 text; save it as CSV UTF-8")]) from fault
-    head = text.partition("\n")[0]
-    separator = max(SEPARATORS, key=head.count)
+    separator = max(SEPARATORS, key=text.partition("\n")[0].count)
+    if text.count(separator) > MOST_CELLS:
+        raise _refused(filename, [problem_at("file", "has more than {most} cells; split it", most=MOST_CELLS)])
+    lines = (row for row in csv.reader(io.StringIO(text, newline=""), delimiter=separator, strict=True) if any(row))
     try:
-        table = pl.read_csv(text.encode(), separator=separator, infer_schema=False)
-        table = table.rename(lambda name: name.strip().lower())
-    except pl.exceptions.DuplicateError as fault:
-        raise _refused(filename, [Problem("file", "has two columns of one name; keep one of them")]) from fault
-    except pl.exceptions.PolarsError as fault:
-        detail = say("cannot be read as a table: {fault}", fault=printable(str(fault).partition("\n")[0]))
-        raise _refused(filename, [Problem("file", detail)]) from fault
-    if table.height > MOST_ROWS:
+        headings, rows = [name.strip().lower() for name in next(lines, [])], list(islice(lines, MOST_ROWS + 1))
+    except csv.Error as fault:
+        raise _refused(filename, [problem_at("file", "cannot be read as a table: {fault}", fault=fault)]) from fault
+    if len(headings) > MOST_COLUMNS:
+        detail = problem_at("file", "has more than {most} columns; keep those of the register", most=MOST_COLUMNS)
+        raise _refused(filename, [detail])
+    if len(set(headings)) < len(headings):
+        raise _refused(filename, [Problem("file", "has two columns of one name; keep one of them")])
+    if len(rows) > MOST_ROWS:
         raise _refused(filename, [problem_at("file", "has more than {most} rows; split it", most=MOST_ROWS)])
-    return table.to_dicts()
+    return headings, rows
 
 
-def _of_columns(first: dict[str, Any]) -> list[Problem]:
+def _of_columns(headings: Sequence[str]) -> list[Problem]:
     found = [problem_at(name, "is no column of the register; it has {columns}", columns=joined(", ", COLUMNS))
-             for name in first if name not in (*COLUMNS, *LEFT)]  # fmt: skip
-    if first and "serial" not in first:
+             for name in headings if name not in (*COLUMNS, *LEFT)]  # fmt: skip
+    if "serial" not in headings:
         found.append(Problem("serial", "is missing: one column names the units"))
     return found
 
 
-def _of_rows(rows: Sequence[dict[str, Any]]) -> list[Problem]:
+def _of_rows(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> list[Problem]:
     found, seen = [], dict[str, int]()
-    for number, row in enumerate(rows, 1):
-        for name in COLUMNS:
-            longest = LONGEST.get(name, SHORT)
-            if len(_cell(row.get(name))) > longest:
-                found.append(problem_at(name, "is longer than {longest} characters", number, longest=longest))
-            if "\x00" in _cell(row.get(name)):
-                found.append(Problem(name, "contains a character that cannot be stored", number))
-        serial = _cell(row.get("serial"))
+    for number, cells in enumerate(rows, 1):
+        row = dict(zip(headings, cells, strict=False))
+        if len(cells) > len(headings):
+            found.append(Problem("file", "has more cells in this row than headings", number))
+        found += _of_row(row, number)
+        serial = _cell(row.get("serial", ""))
         if serial in seen and serial:
             found.append(
                 problem_at("serial", "{serial} stands in row {row} too", number, serial=serial, row=seen[serial])
@@ -82,12 +95,29 @@ def _of_rows(rows: Sequence[dict[str, Any]]) -> list[Problem]:
     return found
 
 
-def _cell(value: object) -> str:
-    text = plain_name(str(value or ""))
-    return text[1:] if text.startswith(QUOTED) else text
+def _of_row(row: Mapping[str, str], number: int) -> list[Problem]:
+    found = []
+    for name in COLUMNS:
+        text, longest = row.get(name, ""), LONGEST.get(name, SHORT)
+        if len(_cell(text)) > longest:
+            found.append(problem_at(name, "is longer than {longest} characters", number, longest=longest))
+        if fault := fault_of_text(with_plain_ends(text)):
+            found.append(Problem(name, fault, number))
+    return found
+
+
+def _cell(value: str) -> str:
+    return QUOTED.sub(r"\1", plain_name(value))
 
 
 def _refused(filename: str, problems: Sequence[Problem]) -> RefusedError:
     count = "one problem" if len(problems) == 1 else say("{number} problems", number=len(problems))
     detail = say("{name} cannot be used: {count}. Nothing was stored.", name=printable(filename), count=count)
-    return RefusedError(detail, tuple(problems))
+    return RefusedError(detail, named(problems))
+
+
+def named(problems: Sequence[Problem]) -> tuple[Problem, ...]:
+    """The first problems, and how many more there are."""
+    more = len(problems) - MOST_PROBLEMS
+    rest = (Problem("file", say_count("{n} more problem", "{n} more problems", more)),) if more > 0 else ()
+    return (*problems[:MOST_PROBLEMS], *rest)

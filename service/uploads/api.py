@@ -36,7 +36,7 @@ from service.uploads.store import Arrivals
 from service.uploads.take_in import is_long
 from service.uploads.template import session_template
 from service.web.dependencies import Now, Reading
-from service.web.fields import Limit, Text
+from service.web.fields import Limit, Sought
 from service.web.files import BINARY, XLSX, as_file
 from service.web.problem_document import Fault, errors, faults
 from service.work.api import JobAnswer, job_answer
@@ -100,13 +100,13 @@ def upload_schema(arrival: Arrival) -> UploadSchema:
 
 
 router = APIRouter(prefix="/uploads", tags=["sessions"])
-FileName = Annotated[Text | None, Query(alias="q", description="Part of the file's name.")]
+FileName = Annotated[Sought | None, Query(alias="q", description="Part of the file's name.")]
 Refused = Annotated[bool, Query(description="Only those that were refused.")]
 UploadId = Annotated[
-    Text, Path(description="A session's id, or `r` and the number of a refusal, or `j` and that of a job.")
+    Sought, Path(description="A session's id, or `r` and the number of a refusal, or `j` and that of a job.")
 ]
 After = Annotated[
-    Text | None, Query(description="The list goes on after this upload: `next_after` of the last answer.")
+    Sought | None, Query(description="The list goes on after this upload: `next_after` of the last answer.")
 ]
 
 
@@ -214,8 +214,8 @@ class PreviewSchema(BaseModel):
 
 
 layouts_router = APIRouter(prefix="/layouts", tags=["sessions"])
-Unit = Annotated[Text, Query(description="Whose last session says what the file does not.")]
-UnitType = Annotated[Text, Query(description="The last session of this stored type says it.")]
+Unit = Annotated[Sought, Query(description="Whose last session says what the file does not.")]
+UnitType = Annotated[Sought, Query(description="The last session of this stored type says it.")]
 
 
 @layouts_router.post("/preview", responses=errors(400, 413, 422), openapi_extra=REQUEST_BODY)
@@ -239,8 +239,10 @@ def preview_layout(file: FileOf, storage: StorageOf, unit: Unit = "", unit_type:
 
 
 templates_router = APIRouter(tags=["sessions"])
-TemplateUnit = Annotated[Text, Query(description="Made like the last session of this serial number, where it has one.")]
-TemplateType = Annotated[Text, Query(description="Made for this stored type, like the last session of its units.")]
+TemplateUnit = Annotated[
+    Sought, Query(description="Made like the last session of this serial number, where it has one.")
+]
+TemplateType = Annotated[Sought, Query(description="Made for this stored type, like the last session of its units.")]
 Kind = Annotated[Literal["accelerometer", "gyroscope"], Query(description="Without a unit and a type: of the sensors.")]
 Sensors = Annotated[int, Query(ge=3, le=12, description="Without a unit and a type: how many.")]
 

@@ -17,7 +17,8 @@ from service.sessions.words.conditions import Condition, condition_of, said_with
 from service.uploads.records import Arrival, ArrivalQuery, Refusal, refusal_number
 from service.uploads.store import Arrivals
 from service.web.dependencies import Reading
-from service.web.list_view import Asked, address_of
+from service.web.fields import Sought
+from service.web.list_view import address_of
 from service.web.render import render
 from service.work.pages import JobLine, job_line
 
@@ -30,9 +31,9 @@ PATH = "/uploads"
 class ArrivalsQuery(BaseModel):
     """Query parameters."""
 
-    q: Asked = ""
-    only: Asked = ""
-    after: Asked = ""
+    q: Sought = ""
+    only: Sought = ""
+    after: Sought = ""
     """Identifier of a session, or number of a refusal after ``r``."""
 
 

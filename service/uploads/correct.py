@@ -25,8 +25,9 @@ from service.sessions.records import Receipt
 from service.sessions.sent import Replaced, SentFile
 from service.sessions.states import RecordState, StateChange
 from service.sessions.store import Sessions
-from service.storage import Storage
+from service.storage import Files
 from service.storage.files import LOST
+from service.storage.queries import Store
 from service.units.store import Units
 from service.uploads.receive import deriving, receipt_of, receive
 
@@ -35,7 +36,9 @@ UNKNOWN = "No correction is known for session {id}: upload a corrected file that
 
 def correct_session(reception: Reception, id: str, by: str, now: datetime) -> Receipt:
     """Stores the corrected file; ConflictError where the session is not questioned, or no correction is known."""
-    source, doubts_found = _doubts_of(reception.storage, id)
+    with reception.storage.database.reading() as store:
+        source, doubts_found = _doubts_of(store, reception.storage.files, id)
+        marks = Sessions(store).get(id).marks
     corrections = tuple(doubt.correction for doubt in doubts_found if doubt.correction is not None)
     if not corrections:
         raise ConflictError(UNKNOWN, id=id)
@@ -46,13 +49,11 @@ def correct_session(reception: Reception, id: str, by: str, now: datetime) -> Re
     content = json.dumps(
         session_document(corrected(source, corrections, say("Corrected: {done}.", done=summary)))
     ).encode()
-    with reception.storage.database.reading() as store:
-        marks = Sessions(store).get(id).marks
     replaced = Replaced(id, by, say("corrected: {done}", done=summary))
     return receive(reception, SentFile(f"{id}-corrected.json", content, replaces=replaced, **marks), now)
 
 
-def remedies_of(storage: Storage, id: str, states: Sequence[StateChange]) -> Remedies:
+def remedies_of(store: Store, files: Files, id: str, states: Sequence[StateChange]) -> Remedies:
     """Corrections of a questioned session; none where nothing is known, or its file is missing.
 
     Its history has those known when it was questioned; without them its file is examined.
@@ -60,7 +61,7 @@ def remedies_of(storage: Storage, id: str, states: Sequence[StateChange]) -> Rem
     if states and states[-1].remedies is not None:
         return states[-1].remedies
     try:
-        _, doubts_found = _doubts_of(storage, id)
+        _, doubts_found = _doubts_of(store, files, id)
     except LOST:
         return Remedies()
     return remedies_among(doubts_found)
@@ -74,16 +75,14 @@ def _as_copy(reception: Reception, id: str, original: str, by: str, now: datetim
         return receipt_of(Sessions(store).get(session.superseded_by or original), created=False)
 
 
-def _doubts_of(storage: Storage, id: str) -> tuple[CalibrationSession, tuple[Doubt, ...]]:
+def _doubts_of(store: Store, files: Files, id: str) -> tuple[CalibrationSession, tuple[Doubt, ...]]:
     """The session in its file, and the doubts about it."""
-    with storage.database.reading() as store:
-        stored = Sessions(store).get(id)
-        if stored.state is not RecordState.QUESTIONED:
-            raise ConflictError("Session {id} is not questioned, so there is nothing to correct.", id=id)
-        source = read_upload(storage.files.content(stored.sha256), stored.filename)
-        known = known_unit(store, Units(store).key(stored.unit))
-        doubts_found = doubts(known, as_checked(source, stored.started_at, stored.unit), known.calibration(id), (id,))
-    return source, doubts_found
+    stored = Sessions(store).get(id)
+    if stored.state is not RecordState.QUESTIONED:
+        raise ConflictError("Session {id} is not questioned, so there is nothing to correct.", id=id)
+    source = read_upload(files.content(stored.sha256), stored.filename)
+    known = known_unit(store, Units(store).key(stored.unit))
+    return source, doubts(known, as_checked(source, stored.started_at, stored.unit), known.calibration(id), (id,))
 
 
 def corrected(session: CalibrationSession, corrections: Sequence[FileCorrection], note: str) -> CalibrationSession:

@@ -21,6 +21,7 @@ from service.ingest.layout.envelope import mapping_of
 from service.kit.arriving_files import Content, held
 from service.kit.limits import in_force
 from service.kit.person import Role
+from service.kit.text import NUL, OF_A_LINE, OF_LINES, fault_of_text
 from service.people.admission import PersonOf
 from service.people.dependencies import StorageOf
 from service.records.unit_changes import Attaching
@@ -29,7 +30,7 @@ from service.sessions.schema import SESSION_FILE
 from service.sessions.sent import Replaced, SentFile
 from service.storage.landing import Landing, Landings
 from service.web.dependencies import UploadSlotOf, limited
-from service.web.fields import LongText, Text
+from service.web.fields import LongText, Sought, Text
 
 MOST_FIELDS = 10
 """Parts of a form besides files: a CSRF token, and statements about a corrected file."""
@@ -166,7 +167,7 @@ def _fault(name: str, text: str) -> str:
     """Why a field of the form cannot be stored; empty where it can."""
     if len(text) > LONGEST[name]:
         return say("is longer than {longest} characters", longest=LONGEST[name])
-    return "contains a character that cannot be stored" if "\x00" in text else ""
+    return fault_of_text(text, OF_LINES if name == "text" else OF_A_LINE) or ""
 
 
 SentOf = Annotated[SentAttachment, Depends(_sent_attachment)]
@@ -179,7 +180,7 @@ REPLACES = "Only an engineer replaces a session: upload the file as it is, and a
 NO_FILE = "The form contains no file. Send the session as the body, or as the form's part `file`."
 
 
-Supersedes = Annotated[Text | None, Query(description="The stored session that this corrected file supersedes.")]
+Supersedes = Annotated[Sought | None, Query(description="The stored session that this corrected file supersedes.")]
 By = Annotated[Text | None, Query(description="Who says so; with `supersedes`.")]
 Why = Annotated[LongText | None, Query(description="What was wrong; with `supersedes`.")]
 Check = Annotated[
@@ -247,10 +248,12 @@ def _mapping(text: bytes, filename: str) -> Json | None:
 
 def _replaced(stated: Mapping[str, str | None]) -> Replaced | None:
     """The session that the file replaces; RefusedError without a name or a reason."""
-    session, by, why = ((stated[name] or "").replace("\x00", "").strip() for name in FIELDS)
+    session, by, why = ((stated[name] or "").strip() for name in FIELDS)
     if not session:
         return None
     faults = [Problem(name, NEEDED) for name, text in (("by", by), ("why", why)) if not text]
+    rules = {"supersedes": (session, NUL), "by": (by, OF_A_LINE), "why": (why, OF_LINES)}
+    faults += [Problem(name, fault) for name, rule in rules.items() if (fault := fault_of_text(*rule))]
     if len(why) > LONGEST_REASON:
         faults.append(
             problem_at(

@@ -6,13 +6,16 @@ from datetime import UTC, date, datetime
 from typing import Annotated, Any
 
 from fastapi import Depends, Path, Query
-from pydantic import AfterValidator, BaseModel, BeforeValidator, Field, StringConstraints
+from pydantic import AfterValidator, BaseModel, BeforeValidator, Field, GetCoreSchemaHandler, StringConstraints
+from pydantic.annotated_handlers import GetJsonSchemaHandler
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema
+from pydantic_core.core_schema import no_info_after_validator_function
 
 from service.kit.moments import EARLIEST, EPOCH, LATEST, MILLISECOND, aware, in_utc
+from service.kit.text import NUL, OF_A_LINE, OF_LINES, fault_of_text, with_plain_ends
 from service.sessions.decision import Verdict
 
-TEXT = r"^[^\x00]*$"
-"""PostgreSQL stores any character but NUL."""
 NUMBER = re.compile(r"\s*[-+]?[\d._]+(e[-+]?\d+)?\s*", re.IGNORECASE)
 FEWEST_MS = 100_000_000_000
 """In milliseconds a day of March 1973, long before any measurement; in seconds the year 5138."""
@@ -53,32 +56,51 @@ Moment = Annotated[datetime, BeforeValidator(_written), AfterValidator(in_utc)]
 Bound = Annotated[datetime, BeforeValidator(_counted), AfterValidator(_bounded)]
 """First or last time of a list; UTC without a zone. Also in milliseconds since 1970."""
 Day = Annotated[date, BeforeValidator(_day_written)]
-Text = Annotated[str, StringConstraints(pattern=TEXT, max_length=200)]
-LongText = Annotated[str, StringConstraints(pattern=TEXT, max_length=2000)]
-Name = Annotated[str, StringConstraints(pattern=TEXT, min_length=1, max_length=200)]
-NonBlankName = Annotated[str, StringConstraints(pattern=r"^[^\x00]*\S[^\x00]*$", max_length=200)]
-Reason = Annotated[str, StringConstraints(pattern=r"^[^\x00]*\S[^\x00]*$", max_length=2000)]
-"""A text that is not blank."""
+
+
+@dataclass(frozen=True)
+class Typed:
+    """A rule for a text: characters that it must not contain, and whether it says anything."""
+
+    refused: str
+    """As inside the brackets of a regular expression."""
+    is_required: bool = False
+    """Whether it must have more than spaces."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return no_info_after_validator_function(self._checked, handler(source))
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        one = f"[^{self.refused}]*"
+        return {**handler(schema), "pattern": f"^{one}[^\\s{self.refused}]{one}$" if self.is_required else f"^{one}$"}
+
+    def _checked(self, text: str) -> str:
+        fault = fault_of_text(text, self.refused, is_required=self.is_required)
+        if fault is not None:
+            raise ValueError(fault)
+        return text if self.refused == OF_A_LINE else with_plain_ends(text)
+
+
+Sought = Annotated[str, StringConstraints(max_length=200), Typed(NUL)]
+"""What is looked for: an earlier release stored other characters than `Text` allows."""
+Text = Annotated[str, StringConstraints(max_length=200), Typed(OF_A_LINE)]
+LongText = Annotated[str, StringConstraints(max_length=2000), Typed(OF_LINES)]
+Name = Annotated[str, StringConstraints(max_length=200), Typed(OF_A_LINE, is_required=True)]
+Reason = Annotated[str, StringConstraints(max_length=2000), Typed(OF_LINES, is_required=True)]
 Number = Annotated[int, Path(ge=1, le=2_000_000_000, description="Number of the entry.", examples=[1])]
 
 SessionId = Annotated[
-    str,
+    Sought,
     Path(
-        pattern=TEXT,
-        max_length=200,
         description="The session's id: the first 20 digits of its file's SHA-256.",
         examples=["3f9a0c5be1d24786aa10"],
     ),
 ]
-Serial = Annotated[
-    str, Path(pattern=TEXT, max_length=200, description="The unit's serial number.", examples=["BA-017"])
-]
-TypeName = Annotated[
-    str, Path(pattern=TEXT, max_length=200, description="The unit type's name.", examples=["hex-cone"])
-]
+Serial = Annotated[Sought, Path(description="The unit's serial number.", examples=["BA-017"])]
+TypeName = Annotated[Sought, Path(description="The unit type's name.", examples=["hex-cone"])]
 StandName = Annotated[
-    str,
-    Path(pattern=TEXT, max_length=200, description="The stand's name, as session files give it.", examples=["ODG-1"]),
+    Sought,
+    Path(description="The stand's name, as session files give it.", examples=["ODG-1"]),
 ]
 Page = Annotated[int, Query(ge=1, le=1_000_000, description="Which page, from 1.")]
 Limit = Annotated[int, Query(ge=1, le=1000, description="How many on a page.")]
@@ -87,7 +109,7 @@ Revision = Annotated[
     Query(ge=0, le=2_000_000_000, description="Under this model revision instead of the one in force; 0: baseline."),
 ]
 WantedVerdict = Annotated[Verdict | None, Query(description="Only units whose latest session has this verdict.")]
-WantedText = Annotated[Text | None, Query(alias="q", description="Part of a serial number or of a unit type's name.")]
+WantedText = Annotated[Sought | None, Query(alias="q", description="Part of a serial number or of a unit type's name.")]
 
 
 @dataclass(frozen=True)
@@ -128,6 +150,3 @@ def _window(page: Page = 1, limit: Limit = 100) -> Window:
 
 
 WindowOf = Annotated[Window, Depends(_window)]
-
-
-NO_NUL = r"^[^\x00]*$"

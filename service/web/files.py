@@ -52,20 +52,19 @@ BINARY = {"schema": {"type": "string", "format": "binary"}}
 TABLES: Json = {media: BINARY for media, form in FORMS.items() if form != "json"}
 BY_HEADER = {"Vary": "Accept"}
 """Of an answer whose form depends on the header `Accept`."""
-FORMULA = r"^[=+\-@\t\r]"
-"""First character of a cell that a spreadsheet would evaluate instead of showing."""
+FORMULA = r"(^|;)([=+\-@\t\r])"
+"""First character of a cell that a spreadsheet would evaluate instead of showing; some split lines at semicolons."""
 
 
 def as_csv(table: "pl.DataFrame", filename: str) -> Response:
-    """A line of names, then one line a row; times in ISO 8601. No text can pass for a formula of a spreadsheet."""
-    harmless = [_harmless(column.name) for column in table.iter_columns() if column.dtype == pl.String]
-    text = table.with_columns(harmless).write_csv(datetime_format="%Y-%m-%dT%H:%M:%S%.6fZ")
+    """A line of names, then one line a row; times in ISO 8601. No text can pass for a formula of a spreadsheet. Where
+    one has a semicolon, all are quoted."""
+    texts = [column for column in table.iter_columns() if column.dtype == pl.String]
+    has_semicolon = any(column.str.contains(";", literal=True).any() for column in texts)
+    text = table.with_columns(pl.col(column.name).str.replace_all(FORMULA, "${1}'${2}") for column in texts).write_csv(
+        datetime_format="%Y-%m-%dT%H:%M:%S%.6fZ", quote_style="non_numeric" if has_semicolon else "necessary"
+    )
     return as_file(text.encode(), "text/csv; charset=utf-8", filename)
-
-
-def _harmless(column: str) -> "pl.Expr":
-    cell = pl.col(column)
-    return pl.when(cell.str.contains(FORMULA)).then(pl.concat_str(pl.lit("'"), cell)).otherwise(cell).alias(column)
 
 
 def as_parquet(table: "pl.DataFrame", filename: str) -> Response:

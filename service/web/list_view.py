@@ -8,11 +8,9 @@ from urllib.parse import urlencode
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationInfo, field_validator
 
 from estimator.message import say
-from service.web.fields import NO_NUL
+from service.web.fields import Sought
 
-Asked = Annotated[str, Field(max_length=200, pattern=NO_NUL)]
-"""A part of an address, as it came."""
-Words = Annotated[Asked, AfterValidator(str.strip)]
+Words = Annotated[Sought, AfterValidator(str.strip)]
 """Part of a name."""
 Entry = TypeVar("Entry")
 LAST = ("sort", "page", "after", "before")
@@ -43,11 +41,11 @@ class ListView(BaseModel):
     PAGE_SIZE: ClassVar[int] = 20
     """Entries on a page: three screens at most."""
 
-    sort: Annotated[Asked, Field(validate_default=True)] = ""
+    sort: Annotated[Sought, Field(validate_default=True)] = ""
     """One of the orders, with ``-`` before it where backwards."""
-    after: Asked = ""
+    after: Sought = ""
     """The entry that this page follows."""
-    before: Asked = ""
+    before: Sought = ""
     """The entry that it comes before."""
 
     @field_validator("sort")

@@ -28,7 +28,7 @@ ADVICE = {
     413: "Shorten it; split a recording, or average it before the upload.",
     421: "Open the service by the address that its operator gives.",
     422: "Correct what is listed and try again.",
-    503: "Nothing was lost. The page works again as soon as the database answers: try again in a few seconds.",
+    503: "Nothing was lost. Try again in a few seconds.",
     507: "Nothing was lost. Ask the operator of this service to free disk space.",
 }
 DEFAULT_ADVICE = "Nothing was lost. Try again; if it happens again, tell the operator of this service."

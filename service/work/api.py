@@ -19,7 +19,7 @@ from service.people.admission import PersonOf
 from service.people.dependencies import CREW, StorageOf
 from service.uploads.store import Arrivals
 from service.web.dependencies import LanguageOf, Now, Reading
-from service.web.fields import Body, Number, Text
+from service.web.fields import Body, Number, Sought, Text
 from service.web.files import BINARY, PDF, XLSX, as_file
 from service.web.problem_document import Fault, errors, faults
 from service.work.dependencies import JobDeskOf
@@ -92,7 +92,7 @@ def list_jobs(
     store: Reading,
     person: PersonOf,
     mine: Annotated[bool, Query(description="Only what this account asked for.")] = False,
-    subject: Annotated[Text, Query(description="Only about this unit, unit type or stand.")] = "",
+    subject: Annotated[Sought, Query(description="Only about this unit, unit type or stand.")] = "",
     before: Annotated[int | None, Query(ge=1, le=2_000_000_000, description="Only jobs before this one.")] = None,
     limit: Annotated[int, Query(ge=1, le=500, description="How many.")] = 100,
 ) -> JobPage:

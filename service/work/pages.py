@@ -21,13 +21,13 @@ from service.kit.measures import number
 from service.kit.person import Person
 from service.models.records import Scope
 from service.people.admission import PersonOf
-from service.people.dependencies import SEE_OTHER, By, Number, StorageOf
+from service.people.dependencies import SEE_OTHER, By, FormText, Number, StorageOf
 from service.sessions.store import Sessions
 from service.storage.queries import Store
 from service.uploads.pages import FileOutcome, job_outcome, outcome_of, upload_page
 from service.uploads.store import Arrivals
 from service.web.dependencies import LanguageOf, Now, Reading, SettingsOf
-from service.web.fields import NO_NUL
+from service.web.fields import Sought
 from service.web.render import SOONEST, follow_seconds, render
 from service.work.dependencies import JobDeskOf
 
@@ -157,7 +157,7 @@ def show_jobs(
     store: Reading,
     person: PersonOf,
     now: Now,
-    subject: Annotated[str, Query(max_length=200, pattern=NO_NUL)] = "",
+    subject: Annotated[Sought, Query()] = "",
     mine: Literal["yes", ""] = "",
     before: Annotated[int | None, Query(ge=1, le=2_000_000_000)] = None,
 ) -> HTMLResponse:
@@ -183,7 +183,7 @@ def ask_for_recalibration(
     person: PersonOf,
     *,
     scope: Annotated[Scope | Literal[""], Form()] = "",
-    subject: Annotated[str, Form(max_length=200, pattern=NO_NUL)] = "",
+    subject: FormText = "",
 ) -> RedirectResponse:
     """Has stored sessions computed again, and shows how far that has come."""
     new = NewJob(JobKind.RECALIBRATION, by, person.login, Scope(scope) if scope else None, subject)

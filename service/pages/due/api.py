@@ -19,7 +19,7 @@ from service.pages.due.view import MONTH, OVERDUE, UNKNOWN, DueView
 from service.papers.sheets import CellKind, Column, Workbook
 from service.storage.queries import Store
 from service.web.dependencies import Now
-from service.web.fields import Text
+from service.web.fields import Sought
 from service.web.files import BINARY, BY_HEADER, XLSX, as_file, as_table, table_of, wanted_form
 from service.web.problem_document import errors
 from service.work.dependencies import ReadingFleet
@@ -60,10 +60,10 @@ def read_due(
     store: ReadingFleet,
     now: Now,
     when: Annotated[
-        Text | None, Query(pattern=PERIOD, description="Only `overdue`, `unknown`, or a month; else all with a date.")
+        Sought | None, Query(pattern=PERIOD, description="Only `overdue`, `unknown`, or a month; else all with a date.")
     ] = None,
-    location: Annotated[Text | None, Query(description="Only those at this location.")] = None,
-    custodian: Annotated[Text | None, Query(description="Only those that this custodian has.")] = None,
+    location: Annotated[Sought | None, Query(description="Only those at this location.")] = None,
+    custodian: Annotated[Sought | None, Query(description="Only those that this custodian has.")] = None,
     format: Annotated[
         Literal["json", "csv", "xlsx"] | None,
         Query(description="Form of the answer; without it the header `Accept` chooses, else it is JSON."),

@@ -8,7 +8,8 @@ from pydantic import AfterValidator
 
 from service.fleet.records import FleetQuery, Order
 from service.outlook.changes import END_OF_TIME
-from service.web.list_view import Asked, ListView
+from service.web.fields import Sought
+from service.web.list_view import ListView
 
 OVERDUE, UNKNOWN = "overdue", "unknown"
 MONTH = re.compile(r"(19|20|21)\d\d-(0[1-9]|1[0-2])")
@@ -37,10 +38,10 @@ class DueView(ListView):
         Order.SERIAL.value: "by serial number",
         Order.TYPE.value: "by type",
     }
-    when: Annotated[Asked, AfterValidator(_known)] = ""
+    when: Annotated[Sought, AfterValidator(_known)] = ""
     """``overdue``, ``unknown``, or a month such as ``2026-12``; all dates where nothing is asked."""
-    location: Asked = ""
-    custodian: Asked = ""
+    location: Sought = ""
+    custodian: Sought = ""
 
     def query(self, now: datetime) -> FleetQuery:
         """What the store is asked: one unit more than fit on the page."""

@@ -7,7 +7,8 @@ from pydantic import Field
 
 from service.fleet.records import FleetQuery, Order, UseAt
 from service.fleet.use import WORDS, Use
-from service.web.list_view import Asked, ListView, Words, one_of
+from service.web.fields import Sought
+from service.web.list_view import ListView, Words, one_of
 
 DUE = {"overdue": "Overdue", "30": "Due within 30 days", "90": "Due within 90 days"}
 """Choices of the next calibration's date, in words."""
@@ -30,14 +31,14 @@ class FleetView(ListView):
         Order.LAST.value: "by last session",
     }
     q: Words = ""
-    use: Annotated[Asked, one_of(set(Use))] = ""
-    due: Annotated[Asked, one_of(DUE)] = ""
-    type: Asked = ""
-    stand: Asked = ""
-    lot: Asked = ""
-    location: Asked = ""
-    custodian: Asked = ""
-    retired: Annotated[Asked, one_of(RETIRED)] = ""
+    use: Annotated[Sought, one_of(set(Use))] = ""
+    due: Annotated[Sought, one_of(DUE)] = ""
+    type: Sought = ""
+    stand: Sought = ""
+    lot: Sought = ""
+    location: Sought = ""
+    custodian: Sought = ""
+    retired: Annotated[Sought, one_of(RETIRED)] = ""
     page: Annotated[int, Field(ge=1, le=1_000_000)] = 1
     """Its number, for people; what is read begins after a unit."""
 

@@ -37,7 +37,7 @@ from service.uploads.api import LaterOf
 from service.uploads.receive import deriving, receive, receive_mapped
 from service.uploads.received import REQUEST_BODY, FileOf
 from service.web.dependencies import Now, Reading
-from service.web.fields import Body, Bound, Name, Reason, Revision, SessionId, Text, WindowOf
+from service.web.fields import Body, Bound, Name, Reason, Revision, SessionId, Sought, WindowOf
 from service.web.problem_document import errors
 from service.work.api import JobAnswer
 
@@ -88,17 +88,17 @@ def upload_session(
 def list_sessions(
     store: Reading,
     window: WindowOf,
-    unit: Annotated[Text | None, Query(description="Only sessions of this serial number.")] = None,
+    unit: Annotated[Sought | None, Query(description="Only sessions of this serial number.")] = None,
     *,
-    unit_type: Annotated[Text | None, Query(description="Only those of units of this type.")] = None,
-    stand: Annotated[Text | None, Query(description="Only those measured on this stand.")] = None,
+    unit_type: Annotated[Sought | None, Query(description="Only those of units of this type.")] = None,
+    stand: Annotated[Sought | None, Query(description="Only those measured on this stand.")] = None,
     since: Annotated[Bound | None, Query(description="Only those measured then or later.")] = None,
     until: Annotated[Bound | None, Query(description="Only those measured before.")] = None,
     state: Annotated[RecordState | None, Query(description="Only those in this state.")] = None,
     verdict: Annotated[Verdict | None, Query(description="Only those with this verdict.")] = None,
     order: Annotated[SessionOrder, Query(description="By date of measurement newest first, by upload …")] = NEWEST,
     backwards: Annotated[bool, Query(description="The same order, last first.")] = False,
-    after: Annotated[Text | None, Query(description="Only those that come after this session.")] = None,
+    after: Annotated[Sought | None, Query(description="Only those that come after this session.")] = None,
 ) -> SessionPage:
     """Sessions, newest measurement first unless another order is asked for."""
     wanted = SessionQuery(

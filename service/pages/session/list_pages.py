@@ -15,7 +15,7 @@ from service.sessions.lines import SessionLine, session_lines
 from service.sessions.records import StoredSession
 from service.sessions.store import Sessions
 from service.web.dependencies import Reading, SettingsOf
-from service.web.fields import NO_NUL
+from service.web.fields import Sought
 from service.web.list_view import Shown
 from service.web.render import render
 
@@ -47,7 +47,7 @@ def sessions_page(found: Sequence[StoredSession], view: SessionsView, choices: F
 
 
 router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
-Chosen = Annotated[str, Query(max_length=200, pattern=NO_NUL)]
+Chosen = Annotated[Sought, Query()]
 
 
 @router.get("/sessions")

@@ -10,7 +10,8 @@ from service.sessions.decision import Verdict
 from service.sessions.records import SessionOrder, SessionQuery
 from service.sessions.states import RecordState
 from service.sessions.words.conditions import CONDITIONS, REFERENCE, RESERVED, STATES, UNDECIDED
-from service.web.list_view import Asked, ListView, Words, one_of
+from service.web.fields import Sought
+from service.web.list_view import ListView, Words, one_of
 
 VERDICTS = {condition.key: condition.word for condition in (*CONDITIONS, REFERENCE, RESERVED)}
 """Choices, in words."""
@@ -24,7 +25,7 @@ def _day(asked: str) -> str:
     return ""
 
 
-Day = Annotated[Asked, AfterValidator(_day)]
+Day = Annotated[Sought, AfterValidator(_day)]
 """``2026-03-01``."""
 
 
@@ -39,14 +40,14 @@ class SessionsView(ListView):
         SessionOrder.UNIT.value: "by serial number",
     }
     q: Words = ""
-    type: Asked = ""
-    stand: Asked = ""
+    type: Sought = ""
+    stand: Sought = ""
     since: Day = ""
     """First day of measurement."""
     until: Day = ""
     """Last day of measurement."""
-    state: Annotated[Asked, one_of(STATE_CHOICES)] = ""
-    verdict: Annotated[Asked, one_of(VERDICTS)] = ""
+    state: Annotated[Sought, one_of(STATE_CHOICES)] = ""
+    verdict: Annotated[Sought, one_of(VERDICTS)] = ""
 
     def query(self) -> SessionQuery:
         """What the store is asked: one session more than fit on the page, which says whether there are others."""

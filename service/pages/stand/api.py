@@ -15,7 +15,7 @@ from service.stands.dcc import ReadCertificate, read_dcc
 from service.stands.records import StandCertificate, StandCondition
 from service.stands.store import StandCertificates, Stands
 from service.web.dependencies import Now, Reading
-from service.web.fields import Body, Day, NonBlankName, StandName
+from service.web.fields import Body, Day, Name, StandName
 from service.web.files import BINARY, BY_HEADER, as_table, table_of, wanted_form
 from service.web.problem_document import errors
 from service.work.dependencies import ReadingFleet
@@ -30,11 +30,11 @@ class StandList(BaseModel):
 class NewStandCertificate(Body):
     """The certificate of a stand's own calibration."""
 
-    number: NonBlankName = Field(description="As printed on it; one of a number that is there takes its place.")
-    issued_by: NonBlankName = Field(description="The laboratory that calibrated the stand.")
+    number: Name = Field(description="As printed on it; one of a number that is there takes its place.")
+    issued_by: Name = Field(description="The laboratory that calibrated the stand.")
     issued_on: Day = Field(description="From this day on it speaks for the stand.", examples=["2026-01-10"])
     valid_until: Day = Field(description="The last day on which it holds.", examples=["2027-01-10"])
-    by: NonBlankName = Field(description="Your name.")
+    by: Name = Field(description="Your name.")
 
 
 class StandCertificateList(BaseModel):
@@ -119,7 +119,7 @@ async def _document(request: Request) -> bytes:
 def put_stand_certificate_document(
     name: StandName,
     content: Annotated[bytes, Depends(_document)],
-    by: Annotated[NonBlankName, Query(description="Your name.")],
+    by: Annotated[Name, Query(description="Your name.")],
     storage: StorageOf,
     now: Now,
     person: PersonOf,

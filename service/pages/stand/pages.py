@@ -26,7 +26,7 @@ from service.models.rules import in_force
 from service.models.sections import AcceptedCause, accepted_causes
 from service.models.store import Models
 from service.pages.fleet.pages import FleetRow, flags_in_words, fleet_row
-from service.people.dependencies import NOT_BLANK, SEE_OTHER, By, Key, StorageOf
+from service.people.dependencies import SEE_OTHER, By, FormName, Key, StorageOf
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
 from service.sessions.lines import SessionLine, session_lines
@@ -269,7 +269,6 @@ def _seating(condition: StandCondition) -> tuple[tuple[str, str], ...]:
 
 
 router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
-Said = Annotated[str, Form(max_length=200, pattern=NOT_BLANK)]
 Day = Annotated[date, Form()]
 
 
@@ -289,7 +288,15 @@ def show_stand(request: Request, store: ReadingFleet, now: Now, name: Key) -> HT
 
 @router.post("/stands/{name:path}/certificates")
 def record_certificate(
-    name: Key, number: Said, issued_by: Said, issued_on: Day, valid_until: Day, *, by: By, storage: StorageOf, now: Now
+    name: Key,
+    number: FormName,
+    issued_by: FormName,
+    issued_on: Day,
+    valid_until: Day,
+    *,
+    by: By,
+    storage: StorageOf,
+    now: Now,
 ) -> RedirectResponse:
     """Keeps the certificate of the stand's calibration."""
     given = StandCertificate(name, number.strip(), issued_by.strip(), issued_on, valid_until)

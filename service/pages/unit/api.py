@@ -44,7 +44,7 @@ from service.sessions.records import HistoryPoint
 from service.units.records import Customer
 from service.units.store import Units
 from service.web.dependencies import LanguageOf, Now, Reading, SettingsOf
-from service.web.fields import Bound, Moment, Serial, Text, WantedText, WantedVerdict, WindowOf
+from service.web.fields import Bound, Moment, Serial, Sought, WantedText, WantedVerdict, WindowOf
 from service.web.files import BY_HEADER, TABLES, as_table, table_of, wanted_form
 from service.web.problem_document import errors
 from service.work.dependencies import ReaderOf, ReadingFleet
@@ -89,17 +89,17 @@ def list_units(
     reserved: Annotated[bool | None, Query(description="Only those whose verdict has a reservation, or none.")] = None,
     *,
     due_before: Annotated[Bound | None, Query(description="Only those whose next calibration is due before.")] = None,
-    unit_type: Annotated[Text | None, Query(description="Only those of this type.")] = None,
-    stand: Annotated[Text | None, Query(description="Only those last measured on this stand.")] = None,
-    lot: Annotated[Text | None, Query(description="Only those of this production lot.")] = None,
+    unit_type: Annotated[Sought | None, Query(description="Only those of this type.")] = None,
+    stand: Annotated[Sought | None, Query(description="Only those last measured on this stand.")] = None,
+    lot: Annotated[Sought | None, Query(description="Only those of this production lot.")] = None,
     flagged: Annotated[bool, Query(description="Only those with an open flag.")] = False,
-    location: Annotated[Text | None, Query(description="Only those at this location.")] = None,
-    custodian: Annotated[Text | None, Query(description="Only those that this custodian has.")] = None,
+    location: Annotated[Sought | None, Query(description="Only those at this location.")] = None,
+    custodian: Annotated[Sought | None, Query(description="Only those that this custodian has.")] = None,
     uncalibrated: Annotated[bool, Query(description="Only registered units of which no session counts yet.")] = False,
     retired: Annotated[bool | None, Query(description="Only retired units, or units in use.")] = False,
     order: Annotated[Order, Query(description="By use, condition, due date, serial number …")] = USE_FIRST,
     backwards: Annotated[bool, Query(description="The same order, last first.")] = False,
-    after: Annotated[Text | None, Query(description="Only those that come after this serial number.")] = None,
+    after: Annotated[Sought | None, Query(description="Only those that come after this serial number.")] = None,
 ) -> UnitPage:
     """Units, those that may not be used first unless another order is asked for."""
     wanted = FleetQuery(

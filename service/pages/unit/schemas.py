@@ -19,7 +19,7 @@ from service.sessions.schemas import SaidSession, said_session
 from service.storage.queries import Store
 from service.types.records import UnitType
 from service.units.records import Service
-from service.web.fields import Body, Bound, Paged, Text, Window
+from service.web.fields import Body, Bound, Paged, Sought, Text, Window
 
 Tolerance = Annotated[float, Field(ge=1e-15, le=1e6, allow_inf_nan=False)]
 
@@ -130,7 +130,7 @@ class HistoryAsked(BaseModel):
     """Which part of a unit's history is wanted, and in which form."""
 
     parameter: Parameter | None = Field(None, description="Only this parameter.")
-    sensor: Text | None = Field(None, description="Only this sensor.")
+    sensor: Sought | None = Field(None, description="Only this sensor.")
     since: Bound | None = Field(None, description="Measured at or after this time.")
     until: Bound | None = Field(None, description="Measured before this time.")
     format: TableForm | None = Field(

@@ -16,7 +16,6 @@ from service.people.sign_in_elsewhere import sign_in_elsewhere
 from service.settings import Settings
 from service.web.application import application_of
 from service.web.dependencies import Now, SettingsOf
-from service.web.fields import NO_NUL
 from service.web.render import render
 
 router = APIRouter(include_in_schema=False)
@@ -27,12 +26,12 @@ LIFETIME_SECONDS = 600
 NOT_SET = "No sign-in provider is set."
 NOT_BEGUN = "This sign-in was not begun in this browser, or more than ten minutes ago. Try again."
 DECLINED = "The provider did not sign you in. Try again, or ask an administrator."
-CallbackText = Annotated[str, Query(max_length=4000, pattern=NO_NUL)]
+CallbackText = Annotated[str, Query(max_length=4000)]
 
 
 @router.get("/oidc/start")
 def start(
-    request: Request, settings: SettingsOf, next: Annotated[str, Query(max_length=2000, pattern=NO_NUL)] = "/"
+    request: Request, settings: SettingsOf, next: Annotated[str, Query(max_length=2000)] = "/"
 ) -> RedirectResponse:
     """Sends the browser to the provider."""
     journey = Journey(new_secret())
@@ -52,7 +51,7 @@ def come_back(
     *,
     code: CallbackText = "",
     state: CallbackText = "",
-    iss: Annotated[str | None, Query(max_length=4000, pattern=NO_NUL)] = None,
+    iss: Annotated[str | None, Query(max_length=4000)] = None,
 ) -> Response:
     """Signs the person in, or shows the error."""
     provider = _provider(request)

@@ -18,7 +18,8 @@ from estimator.json_object import Json
 from estimator.message import say
 from service.errors import AwayError, SignInError
 from service.kit.log import log
-from service.people.provider import Callback, Claims, Journey, ProviderSettings
+from service.kit.text import in_one_line
+from service.people.provider import Callback, Claims, Journey, ProviderSettings, fault_of_subject
 from service.people.secret import is_same
 
 ALGORITHMS = ("RS256", "PS256", "ES256", "RS384", "RS512", "ES384", "EdDSA")
@@ -30,8 +31,6 @@ MOST_BYTES = 256 * 1024
 """Of an answer: metadata, a set of keys, a token."""
 LEEWAY = 60
 """Seconds by which clocks may differ."""
-LONGEST_SUBJECT = 255
-"""Characters (OpenID Connect Core 1.0, section 2)."""
 SILENT = "The sign-in provider does not answer as it should; try again, or sign in with a password."
 REFUSED = "The sign-in was not accepted: {why}. Try again, or ask an administrator."
 WELL_KNOWN = "/.well-known/openid-configuration"
@@ -153,7 +152,7 @@ class OpenIdProvider:
             raise _refused("its token was made for another program")
         if not is_same(str(claims["nonce"]), journey.nonce):
             raise _refused("its token was made for another sign-in")
-        if not 0 < len(claims["sub"]) <= LONGEST_SUBJECT or "\x00" in claims["sub"]:
+        if fault_of_subject(claims["sub"]):
             raise _refused("its token names nobody")
 
 
@@ -193,7 +192,7 @@ def _bounded(answer: httpx.Response) -> bytes:
 def _text(claims: Mapping[str, Any], name: str) -> str:
     """A claim as text; empty for anything else."""
     value = claims.get(name)
-    return " ".join(value.replace("\x00", "").split())[:200] if isinstance(value, str) else ""
+    return in_one_line(value)[:200] if isinstance(value, str) else ""
 
 
 def _refused(why: str) -> SignInError:

@@ -4,7 +4,7 @@ name until all are there. An interrupted restore leaves a database without a sch
 import os
 import shutil
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from hashlib import sha256
@@ -41,6 +41,8 @@ class Restored:
 
     manifest: Manifest
     access: RevokedAccess
+    changed: Mapping[str, int]
+    """How many texts held a NUL, which the database refuses, by table and column."""
 
 
 def restore(backup: Path, url: str, folder: Path, now: datetime, *, revoke_tokens: bool = False) -> Restored:
@@ -53,13 +55,13 @@ def restore(backup: Path, url: str, folder: Path, now: datetime, *, revoke_token
     with alone(url) as connection, opened(backup) as archive, disk_faults():
         _require_empty(connection, folder, manifest)
         staging = _put_files(archive, manifest, folder)
-        _put_rows(archive, manifest, connection)
+        changed = _put_rows(archive, manifest, connection)
         access = revoke_access(connection, now, revoke=revoke_tokens)
         if folder.exists():
             shutil.rmtree(folder)
         os.replace(staging, folder)
         sync_folder(folder.parent)
-    return Restored(manifest, access)
+    return Restored(manifest, access, changed)
 
 
 def _require_empty(connection: Connection, folder: Path, manifest: Manifest) -> None:
@@ -87,18 +89,21 @@ def _put_files(archive: zipfile.ZipFile, manifest: Manifest, folder: Path) -> Pa
     return staging
 
 
-def _put_rows(archive: zipfile.ZipFile, manifest: Manifest, connection: Connection) -> None:
-    """The schema at its revision, and every row."""
+def _put_rows(archive: zipfile.ZipFile, manifest: Manifest, connection: Connection) -> dict[str, int]:
+    """The schema at its revision, and every row; how many texts were changed, by table and column."""
+    changed: dict[str, int] = {}
     raise_to(connection, manifest.revision)
     tables = {table.name: table for table in tables_of(connection)}
     for contents in manifest.tables:
         table = tables[contents.name]
         try:
             with archive.open(contents.member) as lines:
-                put_lines(connection, table, contents.columns, iter(lines))
+                found = put_lines(connection, table, contents.columns, iter(lines))
         except (DataError, IntegrityError) as fault:
             raise ServiceError(f"Table {contents.name} cannot be put into this database: {fault.orig}") from fault
+        changed |= {f"{table.name}.{column}": count for column, count in found.items()}
         continue_numbers(connection, table)
+    return changed
 
 
 def verified(file: Path) -> Manifest:

@@ -2,6 +2,7 @@
 
 import base64
 import json
+from collections import Counter
 from collections.abc import Callable, Iterator
 from datetime import UTC, date, datetime
 from typing import Any
@@ -57,22 +58,38 @@ def lines_of(connection: Connection, table: Table) -> Iterator[bytes]:
             yield json.dumps(values, ensure_ascii=False, separators=(",", ":")).encode() + b"\n"
 
 
-def put_lines(connection: Connection, table: Table, columns: tuple[str, ...], lines: Iterator[bytes]) -> None:
-    """Inserts rows into an empty table."""
-    target_columns = [table.columns[name] for name in columns]
-    stored = [_stored(column, naive=connection.dialect.name == "sqlite") for column in target_columns]
+NUL, INSTEAD = "\x00", "\ufffd"
+"""The character that SQLite holds and PostgreSQL refuses, and what is stored in its place."""
+NUL_WRITTEN = rb"\u0000"
+"""As JSON has it."""
+
+
+def put_lines(connection: Connection, table: Table, columns: tuple[str, ...], lines: Iterator[bytes]) -> Counter[str]:
+    """Inserts rows into an empty table; how often a text was changed, by column, since the engine refuses NUL."""
+    target_columns, changed = [table.columns[name] for name in columns], Counter[str]()
+    is_sqlite = connection.dialect.name == "sqlite"
+    stored = [_stored(column, naive=is_sqlite) for column in target_columns]
     for column in target_columns:
         if isinstance(column.type, JSON):
             column.type = _Written()
     batch: list[dict[str, Any]] = []
     for line in lines:
-        values = zip(target_columns, stored, json.loads(line), strict=True)
-        batch.append({c.name: None if value is None else to(value) for c, to, value in values})
+        values = json.loads(line)
+        if not is_sqlite and NUL_WRITTEN in line:
+            changed.update(name for name, value in zip(columns, values, strict=True) if _has_nul(value))
+            values = [value.replace(NUL, INSTEAD) if _has_nul(value) else value for value in values]
+        row = zip(target_columns, stored, values, strict=True)
+        batch.append({c.name: None if value is None else to(value) for c, to, value in row})
         if len(batch) == BATCH:
             connection.execute(table.insert(), batch)
             batch = []
     if batch:
         connection.execute(table.insert(), batch)
+    return changed
+
+
+def _has_nul(value: Any) -> bool:
+    return isinstance(value, str) and NUL in value
 
 
 def continue_numbers(connection: Connection, table: Table) -> None:

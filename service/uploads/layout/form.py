@@ -22,6 +22,7 @@ from service.errors import RefusedError
 from service.ingest.layout.understand import run_words, split_unit
 from service.kit.arriving_files import held
 from service.kit.limits import in_force
+from service.kit.text import fault_of_text, with_plain_ends
 from service.people.admission import PersonOf
 from service.people.dependencies import StorageOf
 from service.sessions.sent import SentFile
@@ -99,12 +100,21 @@ async def _form(request: Request, storage: StorageOf, person: PersonOf, now: Now
         fields = {name: value for name, value in form.items() if isinstance(value, str) and name != "content"}
         content = await file.read() if isinstance(file, UploadFile) else b""
         name = file.filename if isinstance(file, UploadFile) and file.filename else fields.get("filename", "table")
+    _require_text(fields)
     if not content and isinstance(text, str):
         content = _bytes(text)
     if not content and fields.get("aside"):
         stored = await run_in_threadpool(aside, storage.files, person.login, fields["aside"], now)
         content = stored or b""
     return LayoutForm(SentFile(name, content), fields, _mapping(fields.get("mapping", "")), person.login)
+
+
+def _require_text(fields: Mapping[str, str]) -> None:
+    """RefusedError where something that was written is no text; the mapping is data."""
+    faults = ((name, fault_of_text(with_plain_ends(text))) for name, text in fields.items() if name != "mapping")
+    problems = tuple(Problem(name, fault) for name, fault in faults if fault)
+    if problems:
+        raise RefusedError("The form cannot be used.", problems)
 
 
 @dataclass(frozen=True)

@@ -34,6 +34,16 @@ def test_an_account_is_made_signs_in_and_is_kept_out(run: Run, settings: Setting
     assert "only account" in run("user", "change", "second", "--role", "crew", *own).err
 
 
+def test_a_name_or_label_that_is_no_text_is_refused_under_its_name(run: Run, settings: Settings) -> None:
+    own = ("--database-url", settings.database)
+    ran = run("user", "add", "k.ito", "--role", "admin", "--name", "K.\x1bIto", *own)
+    assert (ran.code, "name" in ran.err, "U+001B" in ran.err) == (1, True, True)
+    run("user", "add", "k.ito", "--role", "admin", *own)
+    assert "U+000A" in run("user", "change", "k.ito", "--name", "K.\nIto", *own).err
+    assert "U+000B" in run("token", "add", "k.ito", "--role", "crew", "--label", "a\vb", *own).err
+    assert "longer" in run("token", "add", "k.ito", "--role", "crew", "--label", 201 * "a", *own).err
+
+
 def test_a_token_opens_the_service_for_commands(
     run: Run, settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -80,6 +80,19 @@ def test_an_effect_is_flagged_once(flagged: Storage) -> None:
     assert flag.session == session_id(GROUP[3])
 
 
+def test_an_effect_of_a_unit_with_the_longest_name_is_flagged_once_and_found_again(storage: Storage) -> None:
+    serial = 200 * "B"
+    for number in range(4):
+        upload(storage, cubic_session(number, unit=serial, cubic=4 * CUBIC), "a.json", NOW)
+    with storage.database.reading() as store:
+        longest = Groups(store).find(Level.UNIT, serial)
+    for _ in range(2):
+        refresh_group(storage, longest, NOW)
+        (flag,) = (found for found in flags(storage) if found.unit == serial)
+        assert flag.place.endswith(": cubic nonlinearity (A2)")
+        assert len(flag.place) <= 200
+
+
 @one_engine
 def test_what_is_accepted_is_known_and_comes_back_when_it_is_withdrawn(flagged: Storage) -> None:
     revision = accept_lasting(flagged, group(flagged), NEW, NOW)

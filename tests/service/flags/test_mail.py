@@ -7,17 +7,19 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
 from email import message_from_string
 from email.header import decode_header, make_header
+from email.message import Message
 from threading import Thread
 
 import pytest
 
 from service.app import create_app
 from service.errors import RefusedError
-from service.flags.changes import fault_of, register_webhook
+from service.flags.changes import fault_of, register_webhook, resolve_flag
 from service.flags.mail import MailServer
 from service.flags.messages import Ways, deliver_due
 from service.flags.records import DeliveryState
 from service.flags.webhooks_store import Webhooks
+from service.jobs.store import Failures
 from service.kit.metrics import Metrics
 from service.settings import Settings
 from service.storage import Storage
@@ -89,12 +91,19 @@ def box() -> Iterator[Mailbox]:
         yield found
 
 
-def failed_unit(storage: Storage) -> int:
+def failed_unit(storage: Storage, serial: str = "BA-017") -> int:
     """A unit whose verdict has changed and that has a flag; the number of the address that messages go to."""
     id = register_webhook(storage, (), CREW, "", who="K. Ito", now=NOW, has_mail=True).id
     for content in FAILED:
-        upload(storage, content, "a.json", NOW)
+        upload(storage, content.replace(b"BA-017", serial.encode()), "a.json", NOW)
     return id
+
+
+def written(message: Message) -> str:
+    """The text of a message."""
+    content = message.get_payload(decode=True)
+    assert isinstance(content, bytes)
+    return content.decode()
 
 
 def test_flags_and_verdicts_are_sent_and_put_off_messages_follow_later(storage: Storage, box: Mailbox) -> None:
@@ -110,6 +119,48 @@ def test_flags_and_verdicts_are_sent_and_put_off_messages_follow_later(storage: 
     assert len({one["Message-ID"] for one in sent}) == 2
     with storage.database.reading() as store:
         assert {one.state for one in Webhooks(store).deliveries(id, 10)} == {DeliveryState.DELIVERED}
+
+
+FORGED = "=?utf-8?q?BA=0d=0aBcc:_x@example.net=0d=0a=0d=0aforged?="
+"""A serial number that mail readers would decode into a header, its end and a body."""
+
+
+def test_no_text_of_a_unit_or_a_person_becomes_a_header_or_ends_one(storage: Storage, box: Mailbox) -> None:
+    failed_unit(storage, FORGED)
+    assert deliver_due(storage, Ways(mail=box.server), lambda: NOW, Metrics()) == 2
+    for one in map(message_from_string, box.messages):
+        assert set(one) == {
+            "Content-Type", "MIME-Version", "Content-Transfer-Encoding", "From", "To", "Subject", "Date", "Message-ID"
+        }  # fmt: skip
+        assert str(make_header(decode_header(one["Subject"]))).startswith(f"{FORGED}: ")
+        assert f"Unit {FORGED}, " in written(one)
+
+
+@pytest.mark.parametrize("control", ["\r", "\r\n", "\v", "\f", "\x00", "\x1b", "\x85", "\u2028", "\u2029"])
+def test_a_reason_with_control_characters_that_an_earlier_release_stored_is_sent(
+    storage: Storage, box: Mailbox, control: str
+) -> None:
+    failed_unit(storage)
+    resolve_flag(storage, 1, "K. Ito", f"seat{control}dirty", NOW)
+    assert deliver_due(storage, Ways(mail=box.server), lambda: NOW, Metrics()) == 3
+    last = message_from_string(box.messages[-1])
+    assert str(make_header(decode_header(last["Subject"]))) == "BA-017: seat dirty"
+    assert written(last).startswith(("seat dirty\n", "seat\ndirty\n"))
+
+
+def test_a_message_that_cannot_be_made_is_given_up_at_once_and_listed_as_failed_work(
+    storage: Storage, box: Mailbox, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def unmade(*_: object) -> None:
+        raise ValueError("no such header")
+
+    id = failed_unit(storage)
+    monkeypatch.setattr("service.flags.mail._message", unmade)
+    assert deliver_due(storage, Ways(mail=box.server), lambda: NOW, Metrics()) == 2
+    with storage.database.reading() as store:
+        assert {one.state for one in Webhooks(store).deliveries(id, 10)} == {DeliveryState.FAILED}
+        assert [one.of for one in Failures(store).listed(NOW, 10)] == [f"webhook {id}"] * 2
+    assert deliver_due(storage, Ways(mail=box.server), lambda: NOW + timedelta(days=2), Metrics()) == 0
 
 
 def test_without_a_mail_server_no_address_is_taken(storage: Storage) -> None:

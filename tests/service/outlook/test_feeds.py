@@ -1,6 +1,7 @@
 """The calendar of due dates: read by other programs' own readers, exact to the letter of its standard."""
 
 from datetime import UTC, date, datetime
+from unicodedata import category
 from uuid import NAMESPACE_URL, uuid5
 
 from hypothesis import example, given, settings
@@ -65,4 +66,5 @@ def test_an_event_is_written_to_the_letter() -> None:
 
 def printable(text: str) -> str:
     """The characters of a text that a calendar can hold."""
-    return "".join(c for c in text if (c >= " " and c != "\x7f") or c == "\n")
+    lines = text.replace("\r\n", "\n").replace("\r", "\n")
+    return "".join(c if c in "\n\t" or category(c) not in ("Cc", "Zl", "Zp") else " " for c in lines)

@@ -7,7 +7,7 @@ import pytest
 
 from service.app import create_app
 from service.errors import ConflictError, RefusedError
-from service.kit.person import Role
+from service.kit.person import EVERYBODY, Role
 from service.people.changes import AccountChange, change_account, make_token, revoke_token
 from service.settings import Settings
 from service.storage import Storage
@@ -42,7 +42,7 @@ def test_a_token_ends_by_itself(settings: Settings, storage: Storage, staff: Sta
 
 def test_a_revoked_token_opens_nothing(settings: Settings, storage: Storage, staff: Staff) -> None:
     id, secret = made(storage)
-    assert revoke_token(storage, id, NOW, who="test").revoked_at == NOW
+    assert revoke_token(storage, id, EVERYBODY, NOW, who="test").revoked_at == NOW
     assert opens(settings, secret) == 401
 
 

@@ -3,12 +3,13 @@
 import json
 import os
 import signal
+import sqlite3
 import subprocess
 import sys
 import zipfile
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import suppress
+from contextlib import closing, suppress
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -89,6 +90,20 @@ def test_a_backup_restores_everything_into_either_engine(full: Settings, other: 
     restore(backup_of(full, tmp_path), url, tmp_path / "new" / "files", NOW)
     assert rows(url) == rows(full.database)
     assert files(tmp_path / "new") == files(full.files) != {}
+
+
+@pytest.mark.parametrize(("databases", "other"), [ENGINES], indirect=True)
+def test_a_text_that_the_other_engine_refuses_is_said_and_the_rest_restored(
+    full: Settings, other: Databases, tmp_path: Path
+) -> None:
+    with closing(sqlite3.connect(full.database.removeprefix("sqlite:///"))) as connection:
+        connection.execute("UPDATE unit_types SET name = 'a' || char(0)")
+        connection.commit()
+    new = Settings(database_url=other.empty(), data_folder=tmp_path / "new")
+    restored = restore(backup_of(full, tmp_path), new.database, new.files, NOW)
+    assert restored.changed == {"unit_types.name": 1}
+    assert {row[1] for row in rows(new.database)["unit_types"]} == {"a\ufffd"}
+    assert len(rows(new.database)["sessions"]) == len(rows(full.database)["sessions"]) > 0
 
 
 @pytest.mark.slow

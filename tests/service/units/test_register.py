@@ -1,5 +1,10 @@
 """The register: units before their first session, where they are and who has them, and retired ones."""
 
+import csv
+import io
+import tracemalloc
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from typing import Any
@@ -13,16 +18,18 @@ from service.fleet.records import FleetQuery, Order
 from service.fleet.store import Fleet
 from service.judging.usable_reading import usable_unit
 from service.outlook.store import Outlooks
-from service.records.register import Entering, enter, move_unit
+from service.records import register
+from service.records.register import PIECE, Entering, enter, move_unit
 from service.storage import Storage
 from service.storage.queries import Store
 from service.types.store import UnitTypes
-from service.units.records import CustodyStep, Move, NewEntry
+from service.units.records import CustodyStep, Move, NewEntry, Registered
 from service.units.register_file import read_register
 from service.units.store import Register
 from service.uploads.receive import upload
 from tests.conftest import Filled, Holding
 from tests.databases import all_on_both_engines as pytest_generate_tests  # noqa: F401 - the hook
+from tests.databases import one_engine
 from tests.service.dated import upload_and_date
 from tests.service.made_sessions import FAILED, session_bytes
 from tests.service.papers.documents import text_of
@@ -183,6 +190,83 @@ def test_every_fault_of_a_table_is_listed_by_row_and_column(table: str, places: 
     with pytest.raises(RefusedError) as refused:
         read_register(table.encode(), "a.csv")
     assert {(p.field, p.row) for p in refused.value.problems} == places
+
+
+def test_others_write_while_a_long_list_is_entered(http: httpx.Client) -> None:
+    table = "serial,unit_type,location\n" + "".join(f"U-{n},RA-{n % 7},Hangar {n}\n" for n in range(500))
+    note = {"text": "moved by road", "by": "K. Ito"}
+    with ThreadPoolExecutor(1) as pool:
+        sent = pool.submit(http.post, "/api/v1/register", files={"file": ("r.csv", table)}, data={"by": "K. Ito"})
+        written = 0
+        while not sent.done():
+            written += http.post("/api/v1/units/BA-017/notes", json=note).status_code == 201
+    assert sent.result().json() == {"new": 500, "changed": 0, "unchanged": 0}
+    assert written > 2
+
+
+def test_a_list_that_somebody_makes_wrong_meanwhile_says_what_is_entered(
+    storage: Storage, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    entries = tuple(NewEntry(f"U-{n:02d}", "RA-9") for n in range(2 * PIECE))
+    known = register._known
+
+    def changed_meanwhile(store: Store, rows: Sequence[tuple[int, NewEntry]], refusal: str) -> dict[str, Registered]:
+        is_second = len(rows) == PIECE and rows[0][1].serial == f"U-{PIECE:02d}"
+        return known(store, [(n, replace(e, unit_type="")) for n, e in rows] if is_second else rows, refusal)
+
+    monkeypatch.setattr(register, "_known", changed_meanwhile)
+    with pytest.raises(RefusedError, match=f"{PIECE} of {2 * PIECE} units are entered"):
+        enter(storage, entries, BY)
+    monkeypatch.undo()
+    assert vars(enter(storage, entries, BY)) == {"new": PIECE, "changed": 0, "unchanged": PIECE}
+
+
+@one_engine
+def test_a_name_with_a_semicolon_is_one_cell_and_no_formula_and_is_read_back(http: httpx.Client) -> None:
+    entry = {"unit_type": "RA-9", "location": "Hangar 2;=1+1", "custodian": "=2;@3", "by": "K. Ito"}
+    assert http.put("/api/v1/units/BA-900/register", json=entry).status_code == 200
+    table = http.get("/api/v1/register?format=csv").text
+    row = next(row for row in csv.DictReader(io.StringIO(table)) if row["serial"] == "BA-900")
+    assert (row["location"], row["custodian"]) == ("Hangar 2;'=1+1", "'=2;'@3")
+    assert '"Hangar 2;' in table
+    for cells in csv.reader(io.StringIO(table), delimiter=";"):
+        assert not any(cell.startswith(("=", "+", "-", "@")) for cell in cells)
+    sent = http.post("/api/v1/register", files={"file": ("r.csv", table)}, data={"by": "K. Ito"})
+    assert sent.json() == {"new": 0, "changed": 1, "unchanged": 1}
+
+
+HEADINGS = ",".join(f"h{number}" for number in range(20_000))
+TOO_LARGE = {
+    "wide and short rows": f"serial,{HEADINGS}\n" + 2000 * "a\n",
+    "headings": "serial," + ",".join(map(hex, range(90_000))) + "\na\n",
+    "commas": 1_000_000 * "," + "\n1,2\n",
+    "commas without an end": 1_000_000 * ",",
+    "rows of commas": 500 * (2000 * "," + "\n"),
+    "rows": "serial\n" + 2_000_000 * "a\n",
+    "one quoted cell": 'serial,note\n"' + 1_000_000 * "a;",
+    "headings of one row after another": 2000 * '"\n",' + "a\n",
+}
+
+
+@one_engine
+@pytest.mark.parametrize("name", TOO_LARGE)
+@pytest.mark.parametrize("path", ["/api/v1/register", "/register/import"])
+def test_a_table_that_is_too_large_is_refused_before_it_is_built(http: httpx.Client, name: str, path: str) -> None:
+    tracemalloc.start()
+    sent = http.post(path, files={"file": ("r.csv", TOO_LARGE[name])}, data={"by": "K. Ito"})
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert (sent.status_code, "r.csv" in sent.text) == (422, True)
+    assert len(sent.content) < 50_000
+    assert most < 20 * len(TOO_LARGE[name]) + 20_000_000
+
+
+@one_engine
+def test_of_many_faults_the_first_are_named_and_the_others_counted(http: httpx.Client) -> None:
+    for table in ("serial,note\n" + 900 * f"A,{2001 * 'x'}\n", "serial\n" + "".join(f"A{n}\n" for n in range(900))):
+        sent = http.post("/api/v1/register", files={"file": ("r.csv", table)}, data={"by": "K. Ito"})
+        problems = sent.json()["problems"]
+        assert (len(problems), "more problems" in problems[-1]["message"]) == (501, True)
 
 
 @pytest.fixture

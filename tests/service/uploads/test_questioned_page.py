@@ -1,11 +1,13 @@
 """A questioned session is seen by those who can put it right, and put right by one button."""
 
 import json
+from collections.abc import Sequence
 from datetime import UTC, datetime
 
 import httpx
 
-from service.sessions.states import RecordKind
+from service.sessions.doubt import Remedies
+from service.sessions.states import RecordKind, StateChange
 from service.sessions.states_store import States
 from service.storage import Storage
 from service.uploads.correct import remedies_of
@@ -51,12 +53,18 @@ def test_programs_have_it_corrected_too(client: httpx.Client) -> None:
     assert client.post(f"/api/v1/sessions/{id}/correct", json={"by": "K. Ito"}).status_code == 409
 
 
+def corrections(storage: Storage, id: str, life: Sequence[StateChange]) -> Remedies:
+    """What would put a session right."""
+    with storage.database.reading() as store:
+        return remedies_of(store, storage.files, id, life)
+
+
 def test_what_would_put_it_right_is_kept_as_its_file_tells_it(storage: Storage) -> None:
     id = upload(storage, in_mv(), "a.json", NOW).id
     with storage.database.reading() as store:
         life = States(store).of(RecordKind.SESSION, id)
-    assert remedies_of(storage, id, life) == remedies_of(storage, id, ())
+    assert corrections(storage, id, life) == corrections(storage, id, ())
     for file in storage.files.folder.rglob("*"):
         if file.is_file():
             file.unlink()
-    assert remedies_of(storage, id, life).correction == "readings of A1–A6 × 0.001"
+    assert corrections(storage, id, life).correction == "readings of A1–A6 × 0.001"
