@@ -1,4 +1,4 @@
-"""What every unit may be used for is kept, so that lists and counts lead with it.
+"""The answer to whether a unit may be used is kept, so that lists and counts lead with it.
 
 Revision: 0042, after 0041
 """

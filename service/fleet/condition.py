@@ -13,7 +13,6 @@ from service.kit.moments import epoch_ms
 from service.outlook.records import UnitOutlook
 from service.sessions.decision import Verdict
 from service.sessions.doubt import Reservations
-from service.sessions.words.conditions import NOT_MEASURED, REFERENCE, UNDECIDED, Condition, condition_of
 from service.types.records import UnitType
 from service.units.records import NO_CUSTOMER, Customer, Registered
 
@@ -115,20 +114,6 @@ class UnitSummary:
         return None if self.due is None else epoch_ms(self.due)
 
 
-@dataclass(frozen=True)
-class ConditionCount:
-    """How many units are in one condition."""
-
-    condition: Condition
-    count: int
-    reserved: int
-    """Of how many of them the verdict has a reservation."""
-
-    def without(self, other: "ConditionCount") -> "ConditionCount":
-        """The same without those that another condition counts."""
-        return ConditionCount(self.condition, self.count - other.count, self.reserved - other.reserved)
-
-
 @answer
 @dataclass(frozen=True)
 class FleetCondition:
@@ -148,22 +133,8 @@ class FleetCondition:
     """How many should have been calibrated by now; 0 where that was not asked."""
     references: int = 0
     """Of how many the latest session is a reference, which nothing was held against."""
-    reserved_references: Hidden[int] = 0
-    """Of how many of these have a reservation."""
     uncalibrated: int = 0
     """Of how many registered units no session counts yet."""
-
-    @property
-    def counts(self) -> tuple[ConditionCount, ...]:
-        """Units by condition, worst first: every unit once."""
-        found = [
-            ConditionCount(condition_of(verdict), count, self.reserved.get(verdict, 0))
-            for verdict, count in sorted(self.verdicts.items(), key=lambda item: -item[0].severity)
-        ]
-        references = ConditionCount(REFERENCE, self.references, self.reserved_references)
-        judged = (counted.without(references) if counted.condition is UNDECIDED else counted for counted in found)
-        unmeasured = ConditionCount(NOT_MEASURED, self.uncalibrated, 0)
-        return (*judged, *(counted for counted in (references, unmeasured) if counted.count))
 
     @classmethod
     def of(cls, tallies: Sequence[Tally], of_groups: int = 0, uncalibrated: int = 0) -> "FleetCondition":
@@ -177,7 +148,6 @@ class FleetCondition:
             flags=sum(tally.flags for tally in tallies) + of_groups,
             reserved={verdict: sum(tally.reserved for tally in of_verdict) for verdict, of_verdict in counts.items()},
             references=sum(tally.units for tally in tallies if tally.is_reference),
-            reserved_references=sum(tally.reserved for tally in tallies if tally.is_reference),
             uncalibrated=uncalibrated,
         )
 

@@ -1,5 +1,6 @@
 """May a unit be used: the four answers, each said alike wherever it stands."""
 
+from collections.abc import Iterator, Mapping
 from enum import StrEnum
 
 from estimator.message import say
@@ -24,6 +25,25 @@ WORDS = {
     Use.NO: "Do not use",
     Use.PENDING: "Do not use yet",
 }
+
+COUNTED = (Use.NO, Use.RESERVED, Use.YES)
+"""Answers that are counted even where no unit has them."""
+COUNT_WORDS = {
+    Use.NO: "must not be used",
+    Use.PENDING: "must not be used yet",
+    Use.RESERVED: "with reservation",
+    Use.YES: "may be used",
+}
+"""The answers after a number of units."""
+TONES = {Use.NO: "fail", Use.PENDING: "undecidable", Use.RESERVED: "conditional-pass", Use.YES: "pass"}
+"""Colours and marks of the answers."""
+
+
+def counted_uses(found: Mapping[Use, int]) -> Iterator[tuple[Use, int]]:
+    """The answers that are counted, each with its number of units, those that must not be used first."""
+    for use in sorted(Use, key=RANKS.__getitem__):
+        if found.get(use) or use in COUNTED:
+            yield use, found.get(use, 0)
 
 
 def in_words(use: Use, action: str) -> str:

@@ -7,7 +7,7 @@ from datetime import datetime
 from estimator.message import capitalised, joined, say_count
 from service.fleet.condition import FleetCondition, ToleranceUsed, UnitSummary
 from service.fleet.records import FleetChoices
-from service.fleet.use import RANKS, WORDS, Use
+from service.fleet.use import COUNT_WORDS, WORDS, Use, counted_uses
 from service.groups.sections import FoundLine
 from service.judging.records import Usable
 from service.kit.copying import copied
@@ -21,14 +21,6 @@ MOST_STANDOUTS = 6
 """Lines above the list of units, so that the list stays in sight."""
 NO_CHOICES = FleetChoices()
 NO_UNITS: Mapping[Use, int] = dict.fromkeys(Use, 0)
-COUNTED = (Use.NO, Use.RESERVED, Use.YES)
-"""Answers that are counted even where no unit has them."""
-COUNT_WORDS = {
-    Use.NO: "must not be used",
-    Use.PENDING: "must not be used yet",
-    Use.RESERVED: "with reservation",
-    Use.YES: "may be used",
-}
 SHORT = {**WORDS, Use.RESERVED: "With reservation"}
 """The answers where there is little room."""
 BAR_LIMIT = 150.0
@@ -203,13 +195,11 @@ def _concerns(
 
 def use_counts(used: Mapping[Use, int], view: FleetView) -> tuple[UseCount, ...]:
     """Units by what they may be used for, those that must not be used first."""
-    uses = (use for use in sorted(Use, key=RANKS.__getitem__) if used.get(use) or use in COUNTED)
     return tuple(
         UseCount(
-            use, COUNT_WORDS[use], used.get(use, 0), view.use == use,
-            view.first(use="" if view.use == use else use.value),
+            use, COUNT_WORDS[use], count, view.use == use, view.first(use="" if view.use == use else use.value)
         )
-        for use in uses
+        for use, count in counted_uses(used)
     )  # fmt: skip
 
 

@@ -6,10 +6,11 @@ from typing import TypeVar
 
 from estimator.message import joined, say
 from estimator.wording import counted
-from service.fleet.condition import ConditionCount, UnitSummary
+from service.fleet.condition import UnitSummary
 from service.fleet.records import FleetQuery, Tally
 from service.fleet.rows_store import FleetRows
 from service.fleet.store import Fleet
+from service.fleet.use import COUNT_WORDS, TONES, counted_uses
 from service.judging.records import Usable
 from service.judging.usable_reading import usable_of
 from service.kit.measures import COVERAGE, day_of, deviation_measure, measured, signed
@@ -24,7 +25,7 @@ from service.papers.found_and_left import JudgedChange, moved
 from service.papers.typeset import picture, typeset
 from service.sessions.decision import Decision, Verdict
 from service.sessions.records import HistoryPoint
-from service.sessions.words.conditions import REFERENCE, Condition, but, condition_of
+from service.sessions.words.conditions import REFERENCE, but, condition_of
 from service.storage.queries import Store
 from service.units.records import Service
 
@@ -41,9 +42,10 @@ class FleetLine:
 
     unit: str
     unit_type: str
-    condition: Condition
     but: str
     """Reservations of the verdict; empty where it is plain."""
+    tone: str
+    """Colour and mark of its use."""
     use: str
     """What it may be used for, and what to do."""
     worst: str
@@ -71,11 +73,10 @@ class FleetSection:
 
 def line_of(unit: UnitSummary, usable: Usable) -> FleetLine:
     """How the unit stands, in people's units."""
-    condition = condition_of(unit.verdict, is_reference=unit.is_reference)
     return FleetLine(
         unit=unit.serial,
         unit_type=unit.unit_type,
-        condition=condition,
+        tone=TONES[usable.answer],
         but=but(unit.reservations),
         use=usable.use,
         worst=joined(" ", filter(None, (unit.worst_sensor, unit.worst_parameter))),
@@ -170,14 +171,23 @@ class PaperNotice:
 
 
 @dataclass(frozen=True)
+class PaperCount:
+    """Number of units with one answer to whether they may be used."""
+
+    tone: str
+    count: int
+    words: str
+
+
+@dataclass(frozen=True)
 class FleetPaper:
     """Everything that the paper says."""
 
     day: str
     total: int
     simulated: int
-    counts: tuple[ConditionCount, ...]
-    """Worst first, every unit once."""
+    counts: tuple[PaperCount, ...]
+    """Those that must not be used first, every unit once."""
     chart: str
     overdue: tuple[PaperNotice, ...]
     more_overdue: int
@@ -206,7 +216,7 @@ def fleet_paper(store: Store, report: FleetReport, language: Language) -> FleetP
         day=day_of(report.at),
         total=report.condition.units,
         simulated=report.condition.simulated,
-        counts=report.condition.counts,
+        counts=tuple(PaperCount(TONES[use], count, COUNT_WORDS[use]) for use, count in counted_uses(report.uses)),
         chart=picture(chart, chart.panels[0], WIDTH, language) if judged else "",
         overdue=tuple(PaperNotice(due.unit, _since(due, report)) for due in overdue),
         more_overdue=report.overdue - len(overdue),

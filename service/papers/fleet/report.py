@@ -1,11 +1,14 @@
 """The whole fleet for a report: what is kept of it, and its units as they are asked for."""
 
+from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
 
 from service.fleet.condition import FleetCondition
 from service.fleet.records import Tally
 from service.fleet.store import Fleet
+from service.fleet.use import Use
 from service.outlook.store import Outlooks
 from service.settings import VERSION
 from service.storage.queries import Store
@@ -22,6 +25,8 @@ class FleetReport:
     condition: FleetCondition
     tallies: tuple[Tally, ...]
     """Units by verdict and by how much of their tolerance they use."""
+    uses: Mapping[Use, int]
+    """Number of units with each answer."""
     overdue: int
     """Units that should have been calibrated by now."""
     software: str
@@ -34,6 +39,7 @@ def fleet_report(store: Store, now: datetime) -> FleetReport:
         at=now,
         condition=FleetCondition.of(tallies),
         tallies=tallies,
+        uses=sum(Fleet(store).uses_at(now).values(), Counter[Use]()),
         overdue=Outlooks(store).overdue(now),
         software=VERSION,
     )
