@@ -4,8 +4,11 @@ What that transaction left is kept by the sessions themselves, so whatever ends 
 in the background (`service.work.watch`) finds it.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from datetime import datetime
+from threading import Lock
+from weakref import WeakValueDictionary
 
 from service.diagnosis.store import Diagnoses
 from service.fleet.changes import ask_for_summaries
@@ -37,9 +40,36 @@ from service.units.store import Units
 def follow(storage: Storage, context: Deriving, serial: str, derived: Derived) -> None:
     """After a change of a unit's records: verdicts, their reservations, and dates. What fails is kept with why,
     and costs the change itself nothing."""
-    with ending_here("derivations", serial):
-        derive_left(storage, context, serial, derived)
-    date(storage, context, serial)
+    with _alone(storage.database.url, serial):
+        with ending_here("derivations", serial):
+            derive_left(storage, context, serial, derived)
+        date(storage, context, serial)
+
+
+PATIENCE = 10.0
+"""Seconds that one change waits for what follows from another of the same unit; then both are worked out at once."""
+_own, _units = Lock(), WeakValueDictionary[tuple[str, str], "_Unit"]()
+
+
+class _Unit:
+    """A unit of which something is worked out."""
+
+    def __init__(self) -> None:
+        self.turn = Lock()
+
+
+@contextmanager
+def _alone(url: str, serial: str) -> Iterator[None]:
+    """What follows from many changes of a unit at once is worked out once or twice: whoever comes meanwhile finds it
+    done."""
+    with _own:
+        unit = _units.setdefault((url, serial), _Unit())
+    has_turn = unit.turn.acquire(timeout=PATIENCE)
+    try:
+        yield
+    finally:
+        if has_turn:
+            unit.turn.release()
 
 
 def derive_left(storage: Storage, context: Deriving, serial: str, derived: Derived) -> None:

@@ -1,13 +1,20 @@
 """Services, notes, and a unit as found and as left, over HTTP."""
 
+from concurrent.futures import ThreadPoolExecutor
+
 import httpx
 import pytest
 
+from service.outlook.changes import Sources, worked_out
+from service.outlook.records import UnitOutlook
+from service.records import follow
 from tests.conftest import Holding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
+from tests.patience import LONG, until
 from tests.service.made_sessions import session_bytes
 
 UNIT = "/api/v1/units/BA-017"
+AT_ONCE = 12
 
 
 def upload(client: httpx.Client, **session: object) -> str:
@@ -93,3 +100,28 @@ def test_a_stage_that_a_file_makes_up_is_refused(client: httpx.Client) -> None:
     answer = client.post("/api/v1/sessions", content=session_bytes(stage="as-new"))
     assert answer.status_code == 422
     assert answer.json()["problems"][0]["field"] == "stage"
+
+
+def test_what_follows_from_many_changes_of_a_unit_at_once_is_worked_out_once_or_twice(
+    measured: httpx.Client, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made = list[Sources]()
+
+    def all_recorded() -> bool:
+        return len(measured.get(UNIT).json()["services"]) == AT_ONCE
+
+    def once_all_are_recorded(sources: Sources) -> UnitOutlook:
+        until(all_recorded)
+        made.append(sources)
+        return worked_out(sources)
+
+    monkeypatch.setattr(follow, "PATIENCE", LONG)
+    monkeypatch.setattr(follow, "worked_out", once_all_are_recorded)
+
+    def record(number: int) -> int:
+        service = {"kind": "repair", "at": f"2026-04-{number + 1:02d}T10:00:00Z", "by": "K. Ito"}
+        return measured.post(f"{UNIT}/services", json=service).status_code
+
+    with ThreadPoolExecutor(AT_ONCE) as pool:
+        assert set(pool.map(record, range(AT_ONCE))) == {201}
+    assert 1 <= len(made) <= 3
