@@ -19,7 +19,7 @@ HEIGHT = 150
 SERIES = ("total", "repeatability", "tolerance")
 COLOURS = ["var(--accent)", "var(--second)", "var(--tolerance)"]
 DASHES = [[1, 0], [4, 3], [5, 3]]
-"""What the lines of a panel show, in their colours and dashes: they differ in black and white too."""
+"""Colours and dashes of the lines of a panel; the dashes tell them apart in black and white too."""
 
 
 def plan_charts(plan: Plan, kind: str) -> tuple[ChartSet, ChartSet]:

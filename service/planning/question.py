@@ -37,7 +37,7 @@ def blank(value: object) -> object:
 
 
 LEAST, LARGEST = 1e-9, 1e9
-"""Of any amount in practical units: far beyond any instrument, and far from the limits of floating point."""
+"""Bounds of every amount in practical units: far beyond any instrument, and far from the limits of floating point."""
 
 
 def _zero_below_least(value: float) -> float:
