@@ -38,7 +38,7 @@ router = APIRouter(prefix="/sessions", tags=["handing on"])
 PDF, XML = "application/pdf", "application/xml"
 """Media types of the two forms."""
 BYTES = {"schema": {"type": "string", "format": "binary"}}
-"""How OpenAPI describes a file."""
+"""OpenAPI schema of a file."""
 FILES: dict[int | str, Json] = {200: {"content": {PDF: BYTES, XML: {"schema": {"type": "string"}}}}}
 Format = Annotated[
     Literal["pdf", "dcc"], Query(description="For people, or as a Digital Calibration Certificate for programs.")
@@ -194,5 +194,5 @@ def read_status(serial: Serial, store: Reading, now: Now, language: LanguageOf) 
     "/{serial:path}/label.svg", responses={200: {"content": {SVG: BYTES}}, **errors(404, 422)}, response_class=Response
 )
 def draw_label(serial: Serial, labels: LabelsOf, language: LanguageOf, *, due: Due = True) -> Response:
-    """The same label as a drawing."""
+    """The unit's label as a drawing, SVG."""
     return as_file(label_svg(labels.of(serial, due=due), language), SVG, f"{serial}-label.svg")

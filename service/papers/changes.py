@@ -80,7 +80,7 @@ class Signing:
 
     session: str
     number: str
-    """Of the certificate that was read."""
+    """Number of the certificate that the signer read."""
     meaning: Meaning
     login: str
     password: str

@@ -20,7 +20,7 @@ from service.sessions.words.conditions import CONDITIONS, REFERENCE
 OPTIONS = {"constant_memory": True, "strings_to_formulas": False, "strings_to_urls": False}
 """Rows go to disk as they come, and no text becomes a formula or a link by what it looks like."""
 FORMULA = re.compile(r"^[=+\-@\t\r]")
-"""How a text begins that a spreadsheet would work out once it is edited."""
+"""Beginning of a text that a spreadsheet would evaluate as a formula once it is edited."""
 LONGEST_TEXT = 32_767
 """Characters that a cell holds."""
 
@@ -28,7 +28,7 @@ Cell = str | float | int | bool | datetime | None
 
 
 class CellKind(Enum):
-    """How a column is written: the format of its numbers, and whether verdicts stand in it."""
+    """Format of a column: that of its numbers, and whether verdicts stand in it."""
 
     TEXT = "@"
     VERDICT = "General;General"

@@ -77,7 +77,7 @@ def _issue(row: CertificateRow) -> Issue:
 
 
 class Signatures(Queries):
-    """By the certificate's number or its session; a row is written once."""
+    """Signatures by the certificate's number or its session; a row is written once."""
 
     def of_session(self, id: str) -> tuple[Signature, ...]:
         """Under every issue of a session's certificate, the first one first."""

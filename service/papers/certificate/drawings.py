@@ -17,7 +17,7 @@ MOST_HISTORIES = 6
 MOST_RESIDUALS = 12
 """Panels of residuals that are drawn, the first ones; the session's page has all."""
 WIDTH = 235
-"""Of one drawn panel, pixels."""
+"""Width of one drawn panel, pixels."""
 
 
 @dataclass(frozen=True)

@@ -48,7 +48,7 @@ def administrative(found: StatedSession, issue: Issue, signers: Sequence[Element
 
 
 def signers_of(signed: Signed) -> tuple[Element, ...]:
-    """Those who signed, as ``respPerson``."""
+    """The signers, as ``respPerson``."""
     return tuple(DCC.respPerson(*_signer(signature, signed.sealed_by)) for signature in signed.signatures)
 
 

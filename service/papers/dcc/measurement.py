@@ -127,7 +127,7 @@ def measurement(found: StatedSession) -> Element:
 
 
 def _methods(found: StatedSession) -> Iterator[Element]:
-    """With their versions: methods of measurement, uncertainty and decision."""
+    """Methods of measurement, uncertainty and decision, with their versions."""
     session, calibration = found.report.session, found.report.calibration
     model = (
         f"Model revision {session.revision}; block axes held by {calibration.gauge}; "

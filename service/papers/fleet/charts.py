@@ -29,7 +29,7 @@ BARS = {
 """First and last bar of a verdict: what is within U of its tolerance has one, so that a better verdict is never to the
 right of a worse one, however large U is."""
 TICKS = list(range(0, LAST + 1, 2 * STEP))
-"""Of the axis of the tolerance: every other bar is numbered, so that numbers do not run into each other."""
+"""Numbered bars of the tolerance axis: every other one, so that the numbers do not overlap."""
 
 
 def fleet_chart(tallies: Iterable[Tally]) -> ChartSet:
@@ -50,7 +50,7 @@ def is_drawn(tally: Tally) -> bool:
 
 
 def bar_by_verdict(tally: Tally) -> int:
-    """Its bar, as far as its verdict allows."""
+    """The bar of a tally, within the limits set by its verdict."""
     first, last = BARS.get(tally.verdict, (tally.bar, tally.bar))
     return min(max(tally.bar, first), last)
 

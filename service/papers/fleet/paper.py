@@ -31,7 +31,7 @@ from service.units.records import Service
 MOST_MOVED = 8
 """Parameters of one unit that are listed."""
 SECTION_WIDTH = 330
-"""Of a drawn history, pixels: half of the page."""
+"""Width of a drawn history, pixels: half of the page."""
 T = TypeVar("T")
 
 
@@ -45,7 +45,7 @@ class FleetLine:
     but: str
     """Reservations of the verdict; empty where it is plain."""
     use: str
-    """What it may be used for, and what to do."""
+    """Permitted use of the unit, and the action that is due."""
     worst: str
     used: str
     """Share of the tolerance, uncertainty included."""
@@ -63,14 +63,14 @@ class FleetSection:
     moved: tuple[JudgedChange, ...]
     """The parameters that did not pass, worst first."""
     more: int
-    """How many others did not."""
+    """Number of further parameters that did not pass."""
     history: str
     """SVG of the worst parameter through time; empty where there is none."""
     history_of: str
 
 
 def line_of(unit: UnitSummary, usable: Usable) -> FleetLine:
-    """How the unit stands, in people's units."""
+    """The row of a unit in the ranking, in practical units."""
     condition = condition_of(unit.verdict, is_reference=unit.is_reference)
     return FleetLine(
         unit=unit.serial,
@@ -156,7 +156,7 @@ MOST_NOTICES = 8
 STANDS_OUT = 5.0
 """Distance from the type's other units, in their robust spread."""
 WIDTH = 700
-"""Of the drawn chart, pixels: the whole page."""
+"""Width of the drawn chart, pixels: the whole page."""
 NOT_FIT = (Verdict.FAIL, Verdict.CONDITIONAL_FAIL, Verdict.UNDECIDABLE)
 """Verdicts that somebody must act on: these units get a section."""
 
@@ -195,7 +195,7 @@ def fleet_pdf(store: Store, report: FleetReport, language: Language = Language.E
 
 
 def fleet_paper(store: Store, report: FleetReport, language: Language) -> FleetPaper:
-    """What the paper says."""
+    """The contents of the paper."""
     judged = any(is_drawn(tally) for tally in report.tallies)
     overdue = [due for due in Outlooks(store).due(MOST_NOTICES) if due.at < report.at]
     chart = fleet_chart(report.tallies)

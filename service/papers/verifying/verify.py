@@ -25,12 +25,12 @@ from service.settings import VERSION
 
 ROOT = f"{{{NAMESPACES['dcc']}}}digitalCalibrationCertificate"
 UNREADABLE = (ValueError, LookupError, ArithmeticError)
-"""What comes of inputs that somebody changed."""
+"""Errors raised by inputs that somebody changed."""
 
 
 @dataclass(frozen=True)
 class Beside:
-    """What else a stranger may have."""
+    """Optional files for further checks."""
 
     schema: Path | None = None
     """Folder with ``dcc/v3.3.0/dcc.xsd``."""
