@@ -1,4 +1,4 @@
-"""Units, types and stands as groups of sessions, and what sessions tell of their groups."""
+"""Units, types and stands as groups of sessions, and the statistics of sessions for their groups."""
 
 import json
 import zlib
@@ -46,14 +46,16 @@ from service.units.tables import UnitRow
 
 
 def group_document(group: Group, found: GroupDiagnosis | None, members: Members) -> str:
-    """What was found, with what the pool leaves out; None of a group without a session to pool."""
+    """The joint diagnosis as JSON, with the sessions that the pool leaves out; of an empty group where ``found`` is
+    None.
+    """
     document = found or _empty(group)
     left = [{"session": m.session, "reason": m.why} for m in members.without]
     return json_text(STORED.written(document) | STORED.written({"left_out": members.left_out, "not_pooled": left}))
 
 
 def read_group(text: str) -> GroupShown:
-    """What `group_document` wrote."""
+    """Reads the output of `group_document`."""
     return GroupShown.from_dict(json.loads(text))
 
 
@@ -127,7 +129,7 @@ class Groups(Queries):
         return tuple(Member(*row) for row in self._session.execute(newest))
 
     def get(self, group: Group) -> GroupAnswer | None:
-        """What is stored of a group; None where nothing is."""
+        """The stored answer of a group; None where there is none."""
         row = self._session.get(GroupDiagnosisRow, (group.level.value, group.key))
         return None if row is None else _answer(row)
 
@@ -251,7 +253,7 @@ class Statistics(Queries):
         self._session.expire_all()
 
     def of(self, sessions: Collection[str]) -> dict[str, SessionStatistics]:
-        """What is kept of sessions."""
+        """The stored statistics of sessions, by identifier."""
         query = select(SessionStatisticsRow.session_id, SessionStatisticsRow.document).where(
             SessionStatisticsRow.session_id.in_(tuple(sessions)),
             SessionStatisticsRow.format == FORMAT,
