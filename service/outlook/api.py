@@ -74,7 +74,7 @@ def _text(value: str) -> str:
 
 
 def _folded(line: str) -> bytes:
-    """With its end; characters stay whole."""
+    """A content line folded to its longest length, with its end; characters stay whole."""
     rest, parts, room = line.encode(), [], LONGEST
     while len(rest) > room:
         cut = room
@@ -91,7 +91,7 @@ CALENDAR = "text/calendar"
 MOST_DAYS = 1000
 """Units in the calendar, the first that are due: years of work, and little to fetch every hour."""
 TEXT = {"type": "string"}
-"""What the description says of the answer."""
+"""OpenAPI schema of the answer."""
 
 
 @router.get("/due.ics", responses={200: {"content": {CALENDAR: {"schema": TEXT}}}, **errors()}, response_class=Response)

@@ -1,4 +1,4 @@
-"""Step: what a unit's outlook is worked out from, and the working out, which no transaction waits for."""
+"""Step: the sources of a unit's outlook, read from the store → the outlook, computed while no transaction is open."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -28,19 +28,19 @@ RULE = b"6"
 AT_HAND = 32
 """Parameters whose prior is kept: those of several types. Units are worked out again type by type."""
 TypeHistories = dict[tuple[str, str], tuple[bytes, ...]]
-"""What a type's units tell, by kind of sensor and parameter."""
+"""Packed histories of the type's units, by kind of sensor and parameter."""
 
 
 @dataclass(frozen=True)
 class Sources:
-    """What an outlook is worked out from."""
+    """Sources of a unit's outlook."""
 
     past: Past
     known: Histories
-    """The unit's."""
+    """Histories of the unit."""
     histories: TypeHistories
     together: tuple[str, ...]
-    """What all sensors did together, and what a diagnosis explains of the latest changes, in words."""
+    """Motions common to all sensors, and the parts of the latest changes that a diagnosis explains, in words."""
 
 
 def known_of(store: Store, serial: str) -> Histories:
@@ -82,12 +82,12 @@ def worked_out(sources: Sources) -> UnitOutlook:
 
 @lru_cache(maxsize=AT_HAND)
 def learned(rows: tuple[bytes, ...]) -> Prior:
-    """What the histories of a type's units let expect of a parameter. It is the same for most units of a large type."""
+    """The prior of a parameter from the histories of a type's units. It is the same for most units of a large type."""
     return learn([item for row in rows for item in unpacked(row)])
 
 
 def of_type(store: Store, unit: int) -> TypeHistories:
-    """What the units of a unit's type contribute to the parameters that this one has."""
+    """The histories of the type's units for each parameter of the unit."""
     return {place: Outlooks(store).histories(unit, *place) for place in sorted(Outlooks(store).places(unit))}
 
 

@@ -128,7 +128,7 @@ def _track_point(change: MeasuredChange, is_drawn: bool, unit: Measure) -> Track
 
 
 def judged_as(point: HistoryPoint) -> Condition:
-    """What a point is marked as."""
+    """The condition with which a point is marked."""
     return NOT_JUDGED if point.tolerance is None else condition_of(point.verdict, is_reference=point.is_reference)
 
 
@@ -148,9 +148,9 @@ def tolerance_text(track: ParameterCourse) -> str:
 
 
 Trends = Mapping[tuple[str, str, str], ParameterTrend]
-"""By sensor, kind and parameter."""
+"""Trends by sensor, kind and parameter."""
 NAMES = ("fan", "trend")
-"""Of the data sets."""
+"""Names of the data sets."""
 YEAR_SECONDS = 365.25 * 86400
 """Julian years, as rates a year are given in."""
 ROOM = 1.5
@@ -220,7 +220,7 @@ HEIGHT = 150
 
 @cache
 def history_spec() -> Json:
-    """With blanks for the unit and the ranges."""
+    """The specification, with blanks for the unit and the ranges."""
     points, limits, services, notes = (alt.NamedData(name=n) for n in (DATA_FORM, "limits", "services", "notes"))
     x = alt.X("t:T", title=None, axis=alt.Axis(tickCount=4), scale=x_scale(type="utc"))
     y = y_axis(y_scale(zero=False))

@@ -1,4 +1,4 @@
-"""Step: judged changes since the last break → a history of each parameter, and what it adds to the unit's type."""
+"""Step: judged changes since the last break → a history of each parameter, and its contribution to the unit's type."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -69,7 +69,7 @@ class MeasuredChange:
 
     @property
     def largest(self) -> float:
-        """What a chart of this point must have room for."""
+        """Largest size for which a chart of this point needs room."""
         return max(abs(self.value or 0.0), self.tolerance or 0.0)
 
     @property
@@ -93,7 +93,7 @@ def changes_of(points: Sequence[HistoryPoint], services: Sequence[Service]) -> t
 
 @dataclass(frozen=True)
 class TrackKey:
-    """Which parameter of which sensor."""
+    """A parameter of a sensor."""
 
     sensor: str
     kind: str
@@ -106,14 +106,14 @@ Place = tuple[str, str, str]
 
 @dataclass(frozen=True, eq=False)
 class Left:
-    """What is left of a change without what a diagnosis explains of it."""
+    """Rest of a change without the part that a diagnosis explains."""
 
     change: list[float]
     sigma: list[float]
-    """Its standard uncertainty that the session brings."""
+    """Standard uncertainty of the rest from the session itself."""
     dof: float | None
     part: list[float]
-    """That was taken off; all SI or relative."""
+    """Part that was taken off; all SI or relative."""
 
 
 NOTHING_EXPLAINED: dict[Place, Left] = {}
@@ -128,12 +128,12 @@ class Histories:
     keys: tuple[TrackKey, ...]
     tracks: tuple[Track, ...]
     dates: tuple[tuple[datetime, ...], ...]
-    """Of every track's sessions, the reference included."""
+    """Dates of every track's sessions, the reference included."""
     left: Mapping[Place, Left] = field(default_factory=dict)
-    """Of changes that a diagnosis explains in part."""
+    """Rests of changes that a diagnosis explains in part."""
 
     def explained_in(self, session: str) -> tuple[tuple[TrackKey, float], ...]:
-        """What a diagnosis explains of a session's changes, the lengths SI or relative, where it is worth telling."""
+        """The changes of a session that a diagnosis explains, the lengths SI or relative, where worth telling."""
         found = ((key, track, self.left.get((session, key.sensor, key.parameter))) for key, track in self._tracks())
         sizes = ((key, track, hypot(*left.part)) for key, track, left in found if left is not None)
         return tuple((key, size) for key, track, size in sizes if size >= WORTH_TELLING * track.tolerance)
@@ -160,7 +160,7 @@ Point = tuple[datetime, list[float], list[float], float | None, float | None]
 
 
 def type_evidence(found: Histories) -> dict[tuple[str, str], list[Evidence]]:
-    """What each history contributes, by kind of sensor and parameter."""
+    """The evidence of each history, by kind of sensor and parameter."""
     by_place: dict[tuple[str, str], list[Evidence]] = {}
     for key, track in zip(found.keys, found.tracks, strict=True):
         by_place.setdefault((key.kind, key.parameter), []).append(evidence(track))
