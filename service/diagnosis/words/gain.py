@@ -1,4 +1,4 @@
-"""What naming causes gains: one sentence with one number for every sensor."""
+"""Gain from naming causes: one sentence with one number for every sensor."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -34,7 +34,7 @@ class HeldOut:
     before: float
     after: float
     typical: float
-    """Of its kind, before."""
+    """Median error of the sensor's kind, before."""
 
 
 Errors = Mapping[str, Mapping[str, float]]
@@ -68,7 +68,7 @@ def concerned(findings: Iterable[Finding]) -> tuple[str, ...]:
 
 
 def _errors(before: Errors, after: Errors) -> Iterator[HeldOut]:
-    """Of every sensor of which both errors are known, and that the extended model predicts otherwise."""
+    """The errors of every sensor of which both are known, and that the extended model predicts otherwise."""
     for kind, by_sensor in before.items():
         typical = median(by_sensor.values())
         for sensor, error in by_sensor.items():
