@@ -217,7 +217,7 @@ def _use(counts: Mapping[int | None, int]) -> TypeUse:
 
 
 def _tolerances(row: ToleranceRow) -> tuple[Tolerances, Tolerances | None]:
-    """Of the block, and of the gyros of a mixed one."""
+    """The tolerances of the block, and of the gyros of a mixed one."""
     gyro = row.gyro_tolerances
     return Tolerances(**row.tolerances), None if gyro is None else Tolerances(**gyro)
 
