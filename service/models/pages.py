@@ -68,7 +68,7 @@ class ModelView:
     amplitudes: tuple[str, ...]
     evidence: str
     gain: str
-    """What it gained for its sensors, in one sentence."""
+    """Gain for its sensors, in one sentence."""
     withdrawn: ModelRevision | None
     holds: bool
     progress: str
