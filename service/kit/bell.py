@@ -1,11 +1,11 @@
-"""Wakes those who make diagnoses when there are new ones to be made, and those who wait for one when it is there."""
+"""Wakes the makers of diagnoses when new ones are to be made, and those who wait for a diagnosis when it is there."""
 
 from collections import deque
 from threading import Condition
 
 
 class Bell:
-    """Of one process; what other processes do is found by looking now and then."""
+    """Signal between the threads of one process; the work of other processes is found by polling."""
 
     def __init__(self) -> None:
         self._condition, self._rung = Condition(), 0
@@ -13,7 +13,7 @@ class Bell:
 
     @property
     def rung(self) -> int:
-        """How often it rang so far: taken before one looks, so that nothing is missed between look and wait."""
+        """Number of rings so far: read it before looking for work, so that nothing is missed between look and wait."""
         return self._rung
 
     def ring(self) -> None:

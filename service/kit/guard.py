@@ -19,12 +19,12 @@ FORESEEN = (ServiceError, SessionError)
 """A store that is away or full, a file that cannot be read: logged in one line. What else a database refuses is a fault
 of the program."""
 Alone = Callable[[str, str], AbstractContextManager[None]]
-"""How one piece of work is done: what is done, and on which stand or unit."""
+"""Context of one piece of work, from its kind and its stand or unit."""
 
 
 @dataclass(frozen=True)
 class Failure:
-    """Why a piece of work is not done."""
+    """Reason why a piece of work is not done."""
 
     fault: str
     reason: str
@@ -33,7 +33,7 @@ class Failure:
 
 
 class Met:
-    """What became of a piece of work."""
+    """Outcome of a piece of work."""
 
     failure: Failure | None = None
 

@@ -67,7 +67,7 @@ def _printable(value: Any) -> Any:
 Element: TypeAlias = _Element
 """A part of a tree."""
 ILLEGAL = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-"""What XML 1.0 (section 2.2, Char) cannot hold."""
+"""Characters that XML 1.0 (section 2.2, Char) cannot hold."""
 
 
 def document(root: Element) -> bytes:
