@@ -18,14 +18,14 @@ class MessageEntry:
     """An entry of a catalogue."""
 
     text: str
-    """As in the source; the singular of a counted thing."""
+    """Text as in the source; the singular of a counted thing."""
     many: str = ""
     """The plural; empty where nothing is counted."""
     place: str = ""
 
     @property
     def id(self) -> str | tuple[str, str]:
-        """Its id in a gettext catalogue."""
+        """Id of the entry in a gettext catalogue."""
         return (self.text, self.many) if self.many else self.text
 
 

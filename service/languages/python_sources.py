@@ -93,7 +93,7 @@ def _texts_in(node: ast.AST, *, described: bool) -> Iterator[ast.expr]:
 
 
 def _children(node: ast.AST) -> Iterator[ast.AST]:
-    """Without documentation, decorators, annotations, keys, and examples for programs."""
+    """The children of a node without documentation, decorators, annotations, keys, and examples for programs."""
     for name, value in ast.iter_fields(node):
         if isinstance(node, ast.keyword) and node.arg == "json_schema_extra":
             continue
