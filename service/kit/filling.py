@@ -14,12 +14,12 @@ class Filling:
     """Progress of the storing. Its one thread writes, the pages read."""
 
     def __init__(self, store: Callable[[Callable[[], None]], None], total: int) -> None:
-        """``store`` stores ``total`` sessions and calls what it is given after each."""
+        """Takes ``store``, which stores ``total`` sessions and calls its argument after each."""
         self._store, self._total = store, total
         self._done, self._is_over = 0, False
 
     def run(self, stop: Event) -> None:
-        """Takes ``store``, which stores ``total`` sessions and calls its argument after each."""
+        """Stores sessions until all are stored, or the service stops."""
 
         def advance() -> None:
             self._done += 1

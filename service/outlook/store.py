@@ -204,7 +204,7 @@ class Outlooks(Queries):
         self._session.flush()
 
     def histories(self, unit: int, kind: str, parameter: str) -> tuple[bytes, ...]:
-        """Packed histories of one parameter for the units of a unit's type, by serial number; limited to `MOST_UNITS`."""
+        """Packed histories of one parameter for the units of a unit's type, by serial number; at most `MOST_UNITS`."""
         type_id = select(UnitRow.unit_type_id).where(UnitRow.id == unit).scalar_subquery()
         query = (
             select(HistoryRow.evidence)

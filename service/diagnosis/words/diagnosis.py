@@ -89,7 +89,9 @@ def summary_of(answer: DiagnosisAnswer) -> str:
 
 
 def nothing_of(answer: DiagnosisAnswer) -> str:
-    """The sentence that nothing is wrong, except where the file states wrong noise, or no reading is left to judge by."""
+    """The sentence that nothing is wrong, with a reservation where the stated noise is, or where no reading is left to
+    judge by.
+    """
     if answer.calibration.fit.is_exact:
         return say("{summary}. {fits}", summary=NOTHING_LEFT, fits=TAKEN_UP)
     if answer.noise:
