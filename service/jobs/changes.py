@@ -136,4 +136,4 @@ class UploadHooks:
 
 
 NO_HOOKS = UploadHooks()
-"""Of an upload whose sender waits for the answer."""
+"""Hooks of an upload whose sender waits for the answer."""

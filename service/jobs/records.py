@@ -15,7 +15,7 @@ KEPT = timedelta(days=7)
 
 
 class JobKind(StrEnum):
-    """What is done."""
+    """Kinds of long work."""
 
     RECALIBRATION = "recalibration"
     """Stored sessions computed again under the models in force, unit by unit."""
@@ -56,13 +56,13 @@ class NewJob:
     scope: Scope | None = None
     """One unit, one unit type or one stand; None for the whole fleet."""
     subject: str = ""
-    """Its name; empty for the whole fleet."""
+    """Name of the unit, unit type or stand; empty for the whole fleet."""
     form: str = ""
-    """Of a report: xlsx or pdf."""
+    """Form of a report: xlsx or pdf."""
     language: str = ""
-    """Of a report."""
+    """Language of a report."""
     revision: int = 0
-    """Of the changed model."""
+    """Revision of the changed model."""
     sent: Sent | None = None
     """The uploaded file; ``subject`` is its name."""
 
@@ -75,7 +75,7 @@ class JobFailure:
     subject: str
     """Serial number of the unit; empty for the whole."""
     reason: str
-    """Why, and what helps."""
+    """Reason for the failure, and the remedy."""
 
 
 @dataclass(frozen=True)
@@ -99,7 +99,7 @@ class Made:
     sha256: str
     """SHA-256 of its content, hexadecimal."""
     until: datetime
-    """It is kept until then."""
+    """Time until which it is kept, UTC."""
 
 
 @answer
@@ -110,7 +110,7 @@ class Job:
     id: int
     """Number of the job."""
     kind: JobKind
-    """What kind of work."""
+    """Kind of work."""
     scope: Scope | None
     """None for the whole fleet."""
     subject: str
@@ -119,10 +119,10 @@ class Job:
     language: Hidden[str]
     revision: Hidden[int]
     who: str
-    """Who asked for it."""
+    """Person who asked for it."""
     account: Hidden[str]
     state: JobState
-    """How far it is."""
+    """Progress of the job."""
     asked_at: datetime
     """When it was asked for, UTC."""
     begun_at: datetime | None
@@ -130,7 +130,7 @@ class Job:
     ended_at: datetime | None
     """When its last piece was begun, UTC; none while it is not ended."""
     cancelled_by: str
-    """Who cancelled it; empty where nobody did."""
+    """Person who cancelled it; empty where nobody did."""
     done: int
     """Pieces that are whole: of a recalibration, units; of an upload, kilobytes read."""
     total: int
@@ -146,28 +146,28 @@ class Job:
     failures: tuple[JobFailure, ...]
     """The first hundred of them."""
     held_up: str
-    """Why it waits although it was begun; empty where it does not."""
+    """Reason why it waits although it was begun; empty where it does not."""
     made: Made | None
-    """What it made, at `/jobs/{id}/file`."""
+    """The file that it made, at `/jobs/{id}/file`."""
     sent: Hidden[Sent | None] = None
     """The uploaded file: ``done`` of its ``total`` kilobytes were read in this pass, after ``cursor`` passes."""
     is_storing: Hidden[bool] = False
     """Whether that file is being stored and can no longer be cancelled."""
     session: str = ""
-    """Of an upload: the session that it became; empty while it is none."""
+    """Id of the session that an upload became; empty while it is none."""
     refusal: Hidden[int | None] = None
     """Number of its refusal, where it could not be used."""
 
     @computed_field  # type: ignore[prop-decorator]  # the one way to describe a property
     @property
     def times(self) -> int:
-        """Of an upload: how often all of it was read already; a log is read several times."""
+        """Number of times that all of an upload was read already; a log is read several times."""
         return self.cursor if self.kind is JobKind.UPLOAD else 0
 
     @computed_field  # type: ignore[prop-decorator]  # the one way to describe a property
     @property
     def upload(self) -> str:
-        """Of an upload: its id at `/uploads/{id}`, which says what becomes of it."""
+        """Id of an upload at `/uploads/{id}`, which gives its outcome."""
         return under_way(self.id) if self.kind is JobKind.UPLOAD else ""
 
     @property
