@@ -6,12 +6,12 @@ from enum import StrEnum
 
 
 class WorkKind(StrEnum):
-    """What is to be done, under the same names as in `FailedKind`."""
+    """Kinds of queued work, under the same names as in `FailedKind`."""
 
     DIAGNOSIS = "diagnosis"
-    """Of a session, by its identifier."""
+    """Diagnosis of a session, by its identifier."""
     OUTLOOK = "outlook"
-    """Of a unit, by its serial number."""
+    """Outlook of a unit, by its serial number."""
     DERIVATION = "derivation"
     """Verdicts of a unit after a change of its records: only failures are stored, by serial number."""
     GROUP = "group"

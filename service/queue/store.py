@@ -38,7 +38,7 @@ class PendingWork(Queries):
     """Work of all kinds that has not failed."""
 
     def counts(self) -> dict[WorkKind, int]:
-        """How much of each kind is to be done."""
+        """Number of pieces of work to be done, by kind."""
         counted = select(WorkRow.kind, func.count(func.distinct(WorkRow.key))).where(WorkRow.failed.is_(None))
         return {WorkKind(kind): count for kind, count in self._session.execute(counted.group_by(WorkRow.kind))}
 
