@@ -34,6 +34,6 @@ ReaderOf = Annotated[Reader, Depends(_reader)]
 GroupReaderOf = Annotated[GroupReader, Depends(_groups)]
 """Reader of what groups of sessions show."""
 JobDeskOf = Annotated[JobDesk, Depends(_jobs)]
-"""Where long jobs are requested."""
+"""The desk at which long jobs are requested."""
 ReadingFleet = Annotated[Store, Depends(_summarised, scope="function")]
 """A store for reading the fleet; its summaries are made first where no background process makes them."""

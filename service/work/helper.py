@@ -28,7 +28,7 @@ from service.work.kinds import KINDS, Kind
 POLL_SECONDS = 0.25
 """Seconds between two checks whether the service is stopping during a diagnosis."""
 CONTEXT = multiprocessing.get_context("forkserver")
-"""How processes are started."""
+"""Start method of the processes."""
 NICENESS = 10
 """Priority, as `nice` counts: where all cores are busy a request gets nine tenths of one."""
 

@@ -1,4 +1,4 @@
-"""Where long jobs are requested: done in the background, or at once where no process works there."""
+"""The desk for long jobs: done in the background, or at once where no process works there."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -37,7 +37,7 @@ Make = Callable[[Kind, str, datetime, KeepGoing], Failure | None]
 
 @dataclass(frozen=True)
 class Worker:
-    """What background work needs."""
+    """Environment of background work."""
 
     settings: Settings
     storage: Storage

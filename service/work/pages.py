@@ -98,7 +98,7 @@ class JobView:
     """Seconds after which the page refreshes."""
     can_cancel: bool
     problems: tuple[Problem, ...]
-    """Of an upload that was refused."""
+    """Faults of a refused upload."""
 
 
 def jobs_page(
@@ -206,7 +206,7 @@ def ask_for_report(
 
 @router.get("/jobs/{id}")
 def show_job(request: Request, id: Number, store: Reading, desk: JobDeskOf, person: PersonOf, now: Now) -> HTMLResponse:
-    """How far one job has come."""
+    """Shows the progress of one job."""
     job = Jobs(store).get(id)
     problems = () if job.refusal is None else Arrivals(store).refusal(job.refusal).problems
     return render(request, "job.html", job_page(job, person, now, desk.workers, problems))
