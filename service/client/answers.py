@@ -18,7 +18,7 @@ Verdict = Literal["pass", "conditional-pass", "undecidable", "conditional-fail",
 
 @dataclass(frozen=True)
 class Reservation:
-    """What speaks against taking a verdict as it stands."""
+    """Reason against taking a verdict as it stands."""
 
     kind: str
     text: str
@@ -133,7 +133,7 @@ class Finding:
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """What the simulation gets wrong about a session."""
+    """Diagnosis of a session."""
 
     session: str
     unit: str
@@ -143,7 +143,7 @@ class Diagnosis:
     """Strongest first."""
     unexplained: bool
     verdict_after: Verdict | None
-    """With the named causes in the model."""
+    """Verdict with the named causes in the model."""
     notes: tuple[str, ...]
     document: Json
 
