@@ -62,7 +62,7 @@ def calibration_view(session: CalibrationSession, calibration: Calibration) -> R
 
 
 def temperature_view(calibration: Calibration) -> Iterator[RenderableType]:
-    """What a thermal session shows of scale factors and biases."""
+    """Scale factors and biases over temperature in a thermal session."""
     curves = curves_in_words(calibration)
     if curves is None:
         return

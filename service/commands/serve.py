@@ -81,7 +81,7 @@ def _first_link(settings: Settings) -> str | None:
 
 
 def _demonstration(settings: Settings) -> Filling | None:
-    """What fills an empty database with the demonstration fleet; None where it holds units already."""
+    """The filling of an empty database with the demonstration fleet; None where it holds units already."""
     storage = Storage(open_database(settings.database), Files(settings.files))
     is_wanted = demo_fleet.is_wanted(storage)
     storage.database.close()

@@ -71,11 +71,11 @@ STILL: dict[str, Callable[[CalibrationSession, np.random.Generator], Calibration
     ARBITRARY_ORIENTATIONS: lambda schedule, _: schedule,
     THERMAL: thermal_schedule,
 }
-"""What is made of still orientations, by programme."""
+"""Programmes of still orientations, with the function that makes their schedule."""
 ON_TURNTABLE = (ROTATION_ALIGNMENT, RATE_TABLE)
 """Programmes of a turntable, which has no two-axis stand's geometry."""
 STAND_ERRORS = ("theta_x", "theta_y", "alpha")
-"""That stay the same over a session and are told with the truth."""
+"""Errors of the stand that stay the same over a session and are written with the truth."""
 DRIFT = re.compile(r"[AG](?P<sensor>\d+)\.(?P<parameter>\w+)=(?P<amount>[-+]?\d+(\.\d*)?)")
 """SENSOR.PARAMETER=AMOUNT."""
 LEVER = re.compile(r"A(?P<sensor>[1-3])=(?P<x>[-+]?\d+(\.\d*)?),(?P<y>[-+]?\d+(\.\d*)?)")
@@ -226,7 +226,7 @@ def _write(made: Iterator[Simulated], wish: HidingRequest | None, seed: int, sta
 
 
 def back_from_future(sessions: int, programme: str, now: datetime) -> timedelta:
-    """By how much sessions must be dated earlier for none to lie after ``now``: as a rule not at all."""
+    """Shift of all sessions to earlier dates so that none lies after ``now``: as a rule zero."""
     last = _measured(sessions - 1, sessions) + (FLIGHT_AFTER if programme == IN_SERVICE else timedelta())
     return INTERVAL * max(0, ceil((last - now) / INTERVAL))
 
@@ -293,7 +293,7 @@ def _dated(session: CalibrationSession, at: datetime) -> CalibrationSession:
 
 
 def _truth(file: Path, simulated: Simulated) -> Json:
-    """What the file should be found to say, SI; and the stand's errors that a calibration cannot know."""
+    """The truth that the file should show, SI, and the stand's errors that a calibration cannot know."""
     head = {"format": "imu-truth/1", "file": str(file), "unit": simulated.session.unit}
     if isinstance(simulated.truth, Truth):
         return {**head, **_turntable(simulated.truth)}
