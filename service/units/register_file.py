@@ -12,7 +12,7 @@ from service.kit.printable import printable
 from service.units.records import NewEntry
 
 COLUMNS = ("serial", "unit_type", "owner", "location", "custodian", "note")
-"""What a table may state; the first is required."""
+"""Possible columns of a table; the first is required."""
 LEFT = ("retired_on",)
 """In what is exported; it is left as it is."""
 MOST_ROWS = 2_000
@@ -22,7 +22,7 @@ SHORT = 200
 """Characters of any other field."""
 SEPARATORS = ",;\t"
 QUOTED = ("'=", "'+", "'-", "'@")
-"""How an export writes what a spreadsheet would take for a formula."""
+"""Beginnings by which an export protects text that a spreadsheet would take for a formula."""
 
 
 def read_register(content: bytes, filename: str) -> tuple[NewEntry, ...]:

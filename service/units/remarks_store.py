@@ -116,11 +116,11 @@ class SaidOf(Queries):
     """Remarks, attached files and services, withdrawn ones too."""
 
     def unit(self, serial: str) -> UnitEvents:
-        """Of a unit as a whole, and files of its sessions; oldest first."""
+        """Notes and files of a unit as a whole, and files of its sessions; oldest first."""
         return self._said(serial, UnitRow.id == NoteRow.unit_id, UnitRow.id == AttachmentRow.unit_id)
 
     def session(self, unit: str, id: str) -> UnitEvents:
-        """Of one session of a unit; in the order in which it was said."""
+        """Notes and files of one session of a unit; in the order of recording."""
         return self._said(unit, NoteRow.session_id == id, AttachmentRow.session_id == id)
 
     def _said(self, serial: str, of_note: ColumnElement[bool], of_file: ColumnElement[bool]) -> UnitEvents:
