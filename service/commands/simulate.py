@@ -104,12 +104,12 @@ class Simulated:
     """One simulated session and everything that is true of it."""
 
     session: CalibrationSession
-    """Its pulses are not counted yet."""
+    """Session before its pulses are counted."""
     truth: SensorParameters | Truth
     draw: StandDraw | None
     """None without a stand."""
     law: ThermalLaw | None = None
-    """What temperature does; None where a programme holds it."""
+    """Effect of temperature; None where a programme holds it."""
 
 
 def read_drift(text: str) -> ParameterMove:
