@@ -37,7 +37,7 @@ DONE = {
     RecordState.WITHDRAWN: "withdraw session",
     RecordState.SUPERSEDED: "supersede session",
 }
-"""What the audit calls each."""
+"""Names of the changes in the audit trail."""
 
 
 def change(

@@ -1,7 +1,7 @@
-"""Flow: what follows from a change of records is worked out after the transaction that changed them, with none open.
+"""Flow: the consequences of a change of records, computed after the transaction that changed them, with none open.
 
-What that transaction left is kept by the sessions themselves, so whatever ends the process between the two, the work
-in the background (`service.work.watch`) finds it.
+The sessions themselves keep the work that the transaction left, so whatever ends the process between the two, the
+background work (`service.work.watch`) finds it.
 """
 
 from collections.abc import Sequence
@@ -43,7 +43,9 @@ def follow(storage: Storage, context: Deriving, serial: str, derived: Derived) -
 
 
 def derive_left(storage: Storage, context: Deriving, serial: str, derived: Derived) -> None:
-    """What a transaction has left to whoever changed the records; the rest is left to background work."""
+    """Judges what a transaction has left to the caller that changed the records; the rest is left to background
+    work.
+    """
     if not derived.is_left:
         return
 
@@ -107,7 +109,9 @@ def _weigh_waiting(storage: Storage, context: Deriving, serial: str, sessions: S
 
 
 def _left(store: Store, context: Deriving, serial: str) -> int:
-    """How many sessions of a unit wait; where none does any more, what follows from all of them."""
+    """The number of a unit's waiting sessions; where there are none any more, all that follows from the sessions is
+    made.
+    """
     left = Derivations(store).waiting_of(serial)
     if not left:
         WorkQueue(store, WorkKind.DERIVATION).drop(serial)
@@ -125,7 +129,7 @@ def date(storage: Storage, context: Deriving, *serials: str) -> None:
 
 
 def date_one(storage: Storage, serial: str, now: datetime) -> None:
-    """The same for one unit, whose failure is the caller's too."""
+    """Makes the outlook of one unit; its failure is the caller's too."""
 
     def keep(why: str) -> None:
         with storage.database.writing() as store:

@@ -1,5 +1,5 @@
-"""Step: sessions judged as their places say: worked out with no transaction open that others wait for, and put down
-within one, where it still holds.
+"""Step: sessions judged at their places, computed while no blocking transaction is open, and stored within one where
+the result still holds.
 """
 
 from bisect import bisect_left, bisect_right
@@ -49,7 +49,7 @@ class Place:
 
     session: Counted
     reference: Counted | None
-    """That it is judged against; itself where it is the reference, None where the epoch has none."""
+    """Reference against which it is judged; itself where it is the reference, None where the epoch has none."""
     since: datetime | None
     """When its epoch began; None in the unit's first one."""
     is_chosen: bool = False
@@ -130,10 +130,10 @@ def _moment(session: Counted) -> Moment:
 
 
 def needs_judging(places: Sequence[Place], since: datetime) -> tuple[Place, ...]:
-    """Those whose verdict rests on something else than it must.
+    """The sessions whose verdict does not rest on the right records.
 
-    Of a verdict from before this was kept it is taken to be right, unless a change touches it: from a date on, or where
-    the reference of its epoch is another one.
+    A verdict from before this was stored is taken to be right, unless a change touches it: from a date on, or where the
+    reference of its epoch is another one.
     """
     moved = {(p.session.block, p.since) for p in places if p.session.is_reference != p.is_reference}
     return tuple(p for p in places if _is_stale(p, since, moved))
@@ -171,7 +171,7 @@ NOTHING_TO_COMPARE = (
 
 @dataclass(frozen=True)
 class Judging:
-    """What sessions of a unit are judged by."""
+    """Basis for judging sessions of a unit."""
 
     files: Files
     coverage_factor: float
@@ -182,28 +182,28 @@ class Judging:
     """When the calibrations of sessions that are stored were computed."""
 
     def unit_type(self, id: str) -> UnitType:
-        """With the tolerances that held when the calibration of a session was computed."""
+        """The unit type with the tolerances that held when the calibration of a session was computed."""
         return held_at(self.of_type, self.computed.get(id, self.at))
 
 
 @dataclass(frozen=True, eq=False)
 class Rejudgement:
-    """How a session is judged at its place, by a revision of the tolerances."""
+    """Judgement of a session at its place, by a revision of the tolerances."""
 
     basis: str
     unit_type: UnitType
     judged: Judged
     moved: MadeCalibration | None = None
-    """Of a recording in service that can be compared: the calibration that it moves."""
+    """Calibration moved by a recording in service that can be compared."""
 
 
 @dataclass(frozen=True)
 class Foreseen:
-    """How sessions are judged if nothing changes until their transaction."""
+    """Judgements that hold if nothing changes until their transaction."""
 
     outcomes: Mapping[str, Rejudgement] = field(default_factory=dict)
     references: Mapping[tuple[str, int], Calibration] = field(default_factory=dict)
-    """Those that they are judged against, by session and revision: they never change under one."""
+    """Their references, by session and revision: they never change under one."""
 
 
 def places_of(known: KnownUnit) -> tuple[Place, ...]:
@@ -216,7 +216,7 @@ def places_of(known: KnownUnit) -> tuple[Place, ...]:
 def judging(
     known: KnownUnit, serial: str, places: Sequence[Place], files: Files, coverage_factor: float, at: datetime
 ) -> Judging:
-    """What some of a unit's sessions are judged by."""
+    """The basis for judging some of a unit's sessions."""
     computed = Derivations(known.store).computed_at([p.session.id for p in places if p.session.id not in known.made])
     return Judging(files, coverage_factor, at, UnitTypes(known.store).of_unit_through_time(serial), computed)
 
@@ -245,7 +245,7 @@ def _outcome(known: KnownUnit, rules: Judging, place: Place) -> Rejudgement:
 
 
 def _steps(known: KnownUnit, place: Place, reference: Calibration, unit_type: UnitType) -> Steps:
-    """What the temperature of a session is worth, by the sessions before it and the laws of its type."""
+    """The effects of a session's temperature, by the sessions before it and the laws of its type."""
     if not place.learned or place.reference is None:
         return NO_STEPS
     start = place.learned[0].at

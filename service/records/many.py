@@ -45,7 +45,7 @@ WITHOUT = "Computing in several processes needs a library that is missing: {faul
 
 @dataclass(frozen=True)
 class UnitOutcome:
-    """What became of a unit: one of the two is there."""
+    """Result for a unit: one of the two is given."""
 
     unit: str
     done: Recalibrated | None
@@ -89,7 +89,9 @@ def can_share() -> bool:
 def by_workers(
     storage: Storage, settings: Settings, clock: Callable[[], datetime], *, workers: int, scheduler: str | None = None
 ) -> AbstractContextManager[Run]:
-    """By so many processes of this machine, or by those of a Dask scheduler; ServiceError where Dask is missing."""
+    """Runs in so many processes of this machine, or in those of a Dask scheduler; ServiceError where Dask is
+    missing.
+    """
     try:
         room = import_module(ROOM)
     except ModuleNotFoundError as fault:
@@ -104,17 +106,19 @@ def by_workers(
 AHEAD = 4
 """Units that are given to each thread of a worker before it asks: it never waits, and no list of a million is held."""
 PATIENCE = "30s"
-"""That a scheduler, and its first worker, is waited for."""
+"""Time to wait for a scheduler, and for its first worker."""
 QUIET = {"dashboard": False, "dashboard_address": "127.0.0.1:0"}
 """Dask's own pages need what is not installed; its figures lie on a port of this machine."""
 PROFILING = "distributed.worker.profile.enabled"
-"""Of Dask: what its workers were seen at, every hundredth of a second, kept for an hour: most of a gigabyte each."""
+"""Dask's setting that samples the work of its workers every hundredth of a second and keeps it for an hour: most of a
+gigabyte each.
+"""
 OTHER = "This worker's database is another one; set its IMU_HEALTH_DATABASE_URL and IMU_HEALTH_DATA_FOLDER."
 
 
 @contextmanager
 def local_cluster(settings: Settings, workers: int) -> Iterator[Client]:
-    """So many processes of this machine with these settings."""
+    """Cluster of so many processes of this machine with these settings."""
     environment = {
         "IMU_HEALTH_DATABASE_URL": settings.database,
         "IMU_HEALTH_DATA_FOLDER": str(settings.data_folder),
@@ -148,7 +152,7 @@ def real_cluster(address: str) -> Iterator[Client]:
 
 @contextmanager
 def running(cluster: AbstractContextManager[Client], last: str, clock: Callable[[], datetime]) -> Iterator[Run]:
-    """What computes units as long as the cluster is there."""
+    """Computes units as long as the cluster is there."""
     with cluster as client:
         yield lambda serials: _run(client, serials, last, clock)
 
@@ -183,7 +187,9 @@ def _work(last: str, serial: str, now: datetime) -> UnitOutcome:
 
 @cache
 def _own(last: str) -> tuple[Storage, float]:
-    """By this process's settings, once it was seen that they name the database with this line."""
+    """Storage and coverage factor by this process's settings, once they are seen to name the database with this
+    line.
+    """
     settings = Settings()
     limits.use(limits.limits_of(settings))
     storage = open_storage(settings)

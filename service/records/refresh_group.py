@@ -1,6 +1,6 @@
-"""Flow: what the sessions of a unit, a unit type or a stand show together, made again when one of them changed.
+"""Flow: the joint diagnosis of the sessions of a unit, a unit type or a stand, made again when one of them changed.
 
-It rests on the accepted sessions: a digest of them says whether a stored answer still holds. So a session that is
+It rests on the accepted sessions: a digest of them tells whether a stored answer still holds. So a session that is
 withdrawn, questioned or superseded leaves the pool, and comes back when it is accepted.
 """
 
@@ -138,7 +138,7 @@ def _pooled(group: Group, members: Members, records: dict[str, SessionStatistics
 
 
 def _named(record: SessionStatistics, member: Member) -> SessionStatistics:
-    """As the service calls what it belongs to and when it was: a file may not state its type, nor a date."""
+    """The statistics under the service's names and times: a file may state neither its type nor a date."""
     stand, at = member.stand or "", written(member.started_at)
     return replace(record, unit=member.unit, unit_type=member.unit_type, stand=stand, started_at=at)
 

@@ -42,9 +42,9 @@ def supersede_session(
 def supersede(
     store: Store, context: Deriving, replaced: Replaced, successor: StoredSession, settled: str | None
 ) -> dict[str, Derived]:
-    """The same within a transaction; derives what is known of the units concerned.
+    """Marks a session as superseded within a transaction, and derives the state of the units concerned.
 
-    ``settled``: the doubt that the other session is in and that this answers, of `settled_by`.
+    ``settled``: the doubt about the other session that this resolves, from `settled_by`.
     """
     is_settled = _is_in_doubt_for(store, successor, settled)
     known = give_way(store, context.at, replaced, successor)

@@ -1,4 +1,4 @@
-"""What the service does to a flag: raises it, sees its matter again, resolves it."""
+"""The service's acts on a flag: raises it, sees its matter again, resolves it."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -9,7 +9,7 @@ from service.fleet.store import Fleet
 from service.storage.queries import Store
 
 SERVICE = "imu-health"
-"""Who raises flags."""
+"""Name under which the service raises flags."""
 
 
 @dataclass(frozen=True)
@@ -18,7 +18,7 @@ class Occasion:
 
     unit: int
     session: str | None
-    """That was looked at; None where the clock or the other units tell."""
+    """Session that was evaluated; None where the clock or other units decide."""
     at: datetime
 
 

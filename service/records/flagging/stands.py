@@ -1,9 +1,9 @@
-"""Step: what sessions and units show of a stand means a flag of the stand, one a matter, that names the units.
+"""Step: findings on a stand by sessions and units → flags of the stand, one a matter, that name the units.
 
-Sessions on it are taken in the order of time, whatever unit they measure: one finds the stand at fault, a
-later one of a block of the same kind no longer does. A shift shows in the common motions of its units, looked
-at now and then. What is no longer found is closed with its reason; what a person resolved stays resolved until a later
-session shows it again.
+Sessions on it are taken in the order of time, whatever unit they measure: one finds the stand at fault, a later one of
+a block of the same kind no longer does. A shift shows in the common motions of its units, which are examined now and
+then. A matter that is no longer found is closed with its reason; one that a person resolved stays resolved until a
+later session shows it again.
 """
 
 from collections.abc import Iterable
@@ -27,7 +27,7 @@ from service.storage.queries import Store
 from service.units.store import Units
 
 OF_STAND = "The flag of the stand covers it."
-"""Of a flag on one unit, as an earlier version raised them."""
+"""Reason for resolving a flag on one unit, as an earlier version raised them."""
 NOT_SHOWN = "No accepted session still shows it."
 SEEN_WITH = "Seen with {units}."
 MOST_NAMED = 12
@@ -38,9 +38,9 @@ MOST_NAMED = 12
 class _Fault:
     concern: Concern
     at: Moment
-    """Of the last session that shows it."""
+    """Moment of the last session that shows it."""
     units: tuple[str, ...]
-    """That showed it since it was last found in order."""
+    """Units that showed it since it was last found in order."""
 
 
 def settle_stand(store: Store, occasion: Occasion, stand: str) -> None:
@@ -57,7 +57,7 @@ def settle_stand(store: Store, occasion: Occasion, stand: str) -> None:
 
 
 def _fault(sessions: Iterable[SessionEvidence], stand: str) -> tuple[_Fault | None, str]:
-    """What is open, and else why nothing is."""
+    """The open fault of a stand, or else the reason why none is open."""
     by_block: dict[str, _Fault] = {}
     why = NOT_SHOWN
     for session in sessions:
