@@ -203,7 +203,7 @@ class Foreseen:
 
     outcomes: Mapping[str, Rejudgement] = field(default_factory=dict)
     references: Mapping[tuple[str, int], Calibration] = field(default_factory=dict)
-    """Their references, by session and revision: they never change under one."""
+    """References of these judgements, by session and revision: a session's calibration never changes under one."""
 
 
 def places_of(known: KnownUnit) -> tuple[Place, ...]:
