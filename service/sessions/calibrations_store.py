@@ -25,7 +25,7 @@ from service.storage.json_text import STORED, json_text
 from service.storage.queries import Queries, lists
 
 LEVEL = 4
-"""Of deflate: 4 % more bytes than the usual 6, in 40 % of the time; an upload waits for it."""
+"""Level of deflate: 4 % more bytes than the usual 6, in 40 % of the time; an upload waits for it."""
 
 
 @dataclass(frozen=True)
@@ -161,7 +161,7 @@ class SessionNoises(Queries):
         return self._session.scalar(select(SessionNoiseRow.session_id).filter_by(session_id=session)) is not None
 
     def get(self, session: str) -> BlockNoise | None:
-        """Of a session; None where it holds no rest, or it was not made yet."""
+        """The noise of a session; None where it holds no rest, or it was not made yet."""
         row = self._session.get(SessionNoiseRow, session)
         return None if row is None else BlockNoise.from_dict(json.loads(zlib.decompress(row.document)))
 

@@ -51,7 +51,7 @@ LABELS = dict(
 
 
 def charts_of_fit(calibration: Calibration) -> tuple[ChartSet, ...]:
-    """How model and readings agree; of a recording in service, how the sensors agree with one another."""
+    """Charts of the agreement of model and readings; for a recording in service, of the sensors with one another."""
     if calibration.parity is None:
         return residual_charts(calibration)
     return course_charts(ParityResult.from_dict(calibration.parity))
@@ -115,7 +115,7 @@ def _marks(faults: tuple[CourseFault, ...], name: str, end: float) -> Iterator[J
 
 @cache
 def _spec() -> Json:
-    """With blanks for the unit, the texts and the ranges."""
+    """The specification, with blanks for the unit, the texts and the ranges."""
     x, scale = alt.X("x:Q", title=ACROSS, axis=alt.Axis(tickCount=5), scale=x_scale(nice=False)), y_scale()
     base = alt.Chart(alt.NamedData(name=DATA_FORM)).encode(x=x)
     faults = alt.Chart(alt.NamedData(name=FAULTS)).encode(x=alt.X("since:Q", title=ACROSS, scale=x_scale(nice=False)))

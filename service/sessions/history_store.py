@@ -1,7 +1,7 @@
-"""Parameters through time, one row a session, sensor and parameter, with what was decided of it.
+"""Parameters through time, one row a session, sensor and parameter, with the decision on it.
 
-Histories have thousands of points: their columns are read, not whole rows as objects, and of a decision only those that
-a point says.
+Histories have thousands of points: their columns are read, not whole rows as objects, and of a decision only the
+columns of a point.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -35,7 +35,7 @@ IS_JUDGED = ParameterRow.parameter.not_in(TERMS)
 
 
 class StoredPoint(NamedTuple):
-    """What a query of points selects, in the order of `POINT`; what was decided is None where nothing was."""
+    """Columns of a query of points, in the order of `POINT`; those of the decision are None where there is none."""
 
     session: str
     at: datetime
@@ -176,7 +176,7 @@ def _axis(row: StoredPoint) -> tuple[float, float, float] | None:
 
 @dataclass(frozen=True)
 class HistoryQuery:
-    """Which part of a unit's history is wanted."""
+    """Part of a unit's history."""
 
     parameter: str | None = None
     sensor: str | None = None
@@ -185,7 +185,7 @@ class HistoryQuery:
     offset: int = 0
     limit: int = 10_000
     revision: int | None = None
-    """As computed under this model revision or the last one before it; None for what is in force."""
+    """Model revision, or the last one before it, of the calibrations; None for those in force."""
     newest: bool = False
     """Whether offset and limit count from the newest point back."""
     raw: bool = False
@@ -194,7 +194,7 @@ class HistoryQuery:
     """Whether the terms of noise are wanted, not what is judged; None for both. One that is asked for by its name
     always is."""
     kind: str | None = None
-    """Of the sensors."""
+    """Kind of the sensors."""
 
 
 class History(Queries):
@@ -329,7 +329,7 @@ def _rows(unit: int, record: StoredSession, values: Iterable[ParameterValue]) ->
 
 
 def _parameter_value(row: Any) -> ParameterValue:
-    """Of a row of `ParameterRow`, or of its columns."""
+    """The value in a row of `ParameterRow`, or in its columns."""
     axis = None
     if row.axis_x is not None and row.axis_y is not None and row.axis_z is not None:
         axis = (row.axis_x, row.axis_y, row.axis_z)

@@ -16,18 +16,18 @@ from service.sessions.doubt import Reservations
 from service.sessions.states import RecordState
 
 PARAMETERS = ("scale", "bias", "quadratic", "axis")
-"""What a calibration gives of every sensor."""
+"""Parameters of every sensor in a calibration."""
 ID_DIGITS = 20
 """Digits of the file's SHA-256: 80 bits; among a million sessions two share them with probability 4e-13."""
 
 
 ALL_PARAMETERS = (*PARAMETERS, "misalignment")
-"""With what only a turntable shows."""
+"""Parameters with that of a turntable alone."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Marks:
-    """What is said of a session with yes or no, with its file or later; carried whole wherever it goes."""
+    """Yes-or-no marks of a session, set with its file or later; carried whole wherever it goes."""
 
     is_check: bool = False
     """Whether it is only a check, which moves no due date unless it is a reference."""
@@ -39,7 +39,7 @@ class Marks:
 
     @property
     def words(self) -> tuple[str, ...]:
-        """Those that are so, as addresses, forms and lists call them."""
+        """Marks that are set, by their names in addresses, forms and lists."""
         return tuple(word for word, name in MARKS.items() if getattr(self, name))
 
 
@@ -54,7 +54,7 @@ def marks_said(words: Collection[str]) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class _StoredSession:
-    """What is known of a stored session without what is said of it."""
+    """A stored session without its marks."""
 
     id: str
     """The first 20 digits of the content's SHA-256."""
@@ -63,15 +63,15 @@ class _StoredSession:
     sha256: str
     """SHA-256 of the uploaded bytes."""
     filename: str
-    """What the file was called when it was uploaded."""
+    """Name of the file when it was uploaded."""
     size: int
     """Bytes."""
     programme: str
-    """How it was measured."""
+    """Programme of measurement."""
     stand: str | None
     """The stand, if one was used."""
     operator: str
-    """Who measured, as the file says."""
+    """Operator by the file."""
     notes: str
     """Notes of the file."""
     started_at: datetime
@@ -81,7 +81,7 @@ class _StoredSession:
     verdict: Verdict
     """The worst of the session's parameters."""
     reason: str
-    """Why the verdict is what it is, in one sentence."""
+    """Reason for the verdict, in one sentence."""
     is_reference: bool
     """Whether later sessions are judged against this one."""
     simulated: bool
@@ -110,12 +110,12 @@ class StoredSession(Marks, _StoredSession):
 
 @dataclass(frozen=True)
 class Digests:
-    """By which a session is recognised, whatever its file's bytes."""
+    """Digests by which a session is recognised, whatever its file's bytes."""
 
     content_digest: str
-    """Of everything that it says."""
+    """Digest of its whole content."""
     readings_digest: str
-    """Of its readings alone."""
+    """Digest of its readings alone."""
 
 
 @dataclass(frozen=True)
@@ -135,16 +135,16 @@ class ParameterValue:
 
 @dataclass(frozen=True)
 class _Receipt:
-    """What an upload is answered with, without what is said of the session."""
+    """Answer to an upload, without the session's marks."""
 
     id: str
     """The session's id, made from the content: the same bytes have the same id."""
     unit: str
     """Serial number of the unit."""
     verdict: Verdict
-    """Of the session: the worst of its parameters."""
+    """Verdict of the session: the worst of its parameters."""
     reason: str
-    """Why, in one sentence."""
+    """Reason for the verdict, in one sentence."""
     created: bool
     """False when the same bytes were already stored."""
     is_reference: bool
@@ -154,7 +154,7 @@ class _Receipt:
     state: RecordState = RecordState.ACCEPTED
     """`questioned` where the file cannot be as it says; then it counts for nothing."""
     remark: str = ""
-    """What else must be known: that the unit is retired; empty where nothing is."""
+    """Further remark, such as that the unit is retired; empty where there is none."""
 
 
 @answer
@@ -164,7 +164,7 @@ class Receipt(Marks, _Receipt):
 
 
 class SessionOrder(StrEnum):
-    """What sessions are listed by; the date of measurement and the identifier order those that are alike."""
+    """Order of a list of sessions; equal ones are ordered by the date of measurement and the identifier."""
 
     MEASURED = "measured"
     """The newest first."""
@@ -177,7 +177,7 @@ class SessionOrder(StrEnum):
 
 @dataclass(frozen=True)
 class SessionQuery(ListQuery):
-    """Which sessions are wanted, and after or before which identifier."""
+    """Filter of sessions, and the identifier after or before which the list goes on."""
 
     text: str | None = None
     """Part of the unit's serial number, small and capital letters alike."""
@@ -246,7 +246,7 @@ class HistoryPoint:
 
 
 class DiagnosisState(StrEnum):
-    """What a diagnosis came to; not applicable: no causes are looked for in sessions of its programme."""
+    """Result of a diagnosis; not applicable: no causes are looked for in sessions of its programme."""
 
     NOTHING = "nothing wrong"
     NAMED = "named"
@@ -268,7 +268,7 @@ class DiagnosisSummary:
     state: DiagnosisState
     summary: str
     gain: str = ""
-    """What the named causes gain, in one sentence."""
+    """Gain from the named causes, in one sentence."""
 
 
 UNWEIGHED = "~"

@@ -1,4 +1,4 @@
-"""Step: what all sensors of a block did together since the reference, in plain sentences."""
+"""Step: the common motions of a block's sensors since the reference → plain sentences."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -88,7 +88,7 @@ def _beyond(motion: CommonMotion, coverage: float, of_kind: str, since: str) -> 
 
 
 def _turn_measure(motion: CommonMotion) -> Measure:
-    """Of a block that was mounted otherwise, degrees."""
+    """The measure of a turn: degrees where the block was mounted otherwise."""
     if motion.size >= DEGREE:
         return COARSE_MEASURES[motion.kind, "axis"]
     return deviation_measure(motion.kind, "axis", motion.size)
@@ -104,7 +104,7 @@ def _about(motion: CommonMotion) -> str:
 
 
 def _alone(motion: CommonMotion) -> str:
-    """Who did not move with the others."""
+    """The sentence on sensors that did not move with the others."""
     if not motion.left_out:
         return ""
     parameter = "input axis" if motion.quantity == AXES else "scale factor"
