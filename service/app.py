@@ -111,7 +111,7 @@ def _at_work(application: Application) -> Callable[[FastAPI], AbstractAsyncConte
 
 
 def _begin(application: Application, threads: Iterable[Thread], stop: Event) -> None:
-    """What is done in the background, after the sessions that are to be stored first."""
+    """Begins the work in the background, after the sessions that are to be stored first."""
     filling = application.find(Filling)
     if filling is not None:
         with Guard(application.metrics).alone("filling", ""):
@@ -121,7 +121,7 @@ def _begin(application: Application, threads: Iterable[Thread], stop: Event) -> 
 
 
 def _work(application: Application) -> Iterator[tuple[str, Callable[..., None], tuple[object, ...]]]:
-    """What is done in the background: its name, what does it, and what that needs."""
+    """The work in the background: name, function and arguments of each thread."""
     storage, clock, ways = application.storage, application.clock, _ways(application.settings)
     metrics, k = application.metrics, application.settings.coverage_factor
     for number in range(application.settings.diagnosis_workers):

@@ -46,7 +46,7 @@ class Commands(TyperGroup):
         return list(CATALOGUE)
 
     def shell_complete(self, ctx: Any, incomplete: str) -> Any:
-        """What a shell offers for the start of a name: by a group of commands that only have a name and a line."""
+        """Completions of the start of a name, from a group of commands that only have a name and a line."""
         shown = [TyperCommand(name, help=entry.says) for name, entry in CATALOGUE.items()]
         listed = TyperGroup(name=self.name, commands=shown, params=self.params)
         return listed.shell_complete(typer.Context(listed), incomplete)

@@ -56,7 +56,7 @@ class NotFoundError(ServiceError):
 
 
 class ConflictError(ServiceError):
-    """What is asked for does not fit what was done before."""
+    """The request does not fit earlier actions."""
 
     status = HTTPStatus.CONFLICT
 
@@ -107,7 +107,7 @@ class BusyError(AwayError):
 
 
 class PendingError(AwayError):
-    """What is asked for rests on what is still being made."""
+    """The answer rests on results that are still being made."""
 
     retry_after = 2
     """A larger session is diagnosed in that time."""

@@ -48,5 +48,5 @@ SUBJECTS = (
     audit, people, types, units, sessions, models, stands, diagnosis, queue, jobs, outlook, groups, flags, fleet,
     papers, uploads,
 )  # fmt: skip
-"""Where tables are defined."""
+"""Modules in which tables are defined."""
 METADATA = Base.metadata
