@@ -112,7 +112,7 @@ class Window:
 
 
 class Body(BaseModel, extra="forbid"):
-    """What is sent: a field that nobody knows is refused."""
+    """Body of a request: an unknown field is refused."""
 
 
 class Paged(BaseModel):

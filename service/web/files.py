@@ -51,7 +51,7 @@ BINARY = {"schema": {"type": "string", "format": "binary"}}
 """Schema of a table in OpenAPI."""
 TABLES: Json = {media: BINARY for media, form in FORMS.items() if form != "json"}
 BY_HEADER = {"Vary": "Accept"}
-"""Of an answer whose form depends on the header `Accept`."""
+"""Header of an answer whose form depends on the header `Accept`."""
 FORMULA = r"^[=+\-@\t\r]"
 """First character of a cell that a spreadsheet would evaluate instead of showing."""
 
@@ -83,7 +83,7 @@ def as_arrow(table: "pl.DataFrame", filename: str) -> Response:
 
 
 WRITERS = {"csv": as_csv, "parquet": as_parquet, "arrow": as_arrow}
-"""By the value of the parameter `format`."""
+"""Writers by the value of the parameter `format`."""
 
 
 def as_table(table: "pl.DataFrame", form: str, name: str) -> Response:

@@ -1,4 +1,4 @@
-"""What a visitor asked a list for: it stands in the address, so that it can be kept, sent on and gone back to."""
+"""Filter and order of a list. They are part of its address, so that it can be kept, sent on and gone back to."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
@@ -16,9 +16,9 @@ Words = Annotated[Asked, AfterValidator(str.strip)]
 """Part of a name."""
 Entry = TypeVar("Entry")
 LAST = ("sort", "page", "after", "before")
-"""What stands at the end of an address."""
+"""Parameters at the end of an address."""
 PLACE = LAST[1:]
-"""Which page of the list is shown."""
+"""Parameters of the page of the list."""
 
 
 def one_of(known: Collection[str]) -> AfterValidator:
@@ -39,7 +39,7 @@ class ListView(BaseModel):
     model_config = ConfigDict(frozen=True)
     PATH: ClassVar[str]
     ORDERS: ClassVar[Mapping[str, str]]
-    """What the list can be ordered by, in words; by the first where nothing else is asked."""
+    """Possible orders of the list, with their names in words; the first is the default."""
     PAGE_SIZE: ClassVar[int] = 20
     """Entries on a page: three screens at most."""
 
@@ -64,7 +64,7 @@ class ListView(BaseModel):
 
     @property
     def order(self) -> str:
-        """What the list is ordered by."""
+        """Column by which the list is ordered."""
         return self.sort.removeprefix("-")
 
     @property

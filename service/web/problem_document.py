@@ -17,7 +17,7 @@ class Fault(BaseModel):
 
 
 class ProblemDocument(BaseModel):
-    """Why a request was not carried out."""
+    """Reason why a request was not carried out."""
 
     model_config = ConfigDict(
         json_schema_extra={

@@ -44,7 +44,7 @@ class ProblemPage:
     problems: tuple[Problem, ...]
     advice: str
     request_id: str
-    """Of the request in the log; empty where it has none."""
+    """Id of the request in the log; empty where it has none."""
 
 
 def problem_page(problem: Json) -> ProblemPage:

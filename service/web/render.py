@@ -131,7 +131,7 @@ def render(request: Request, template: str, page: Any, status: int = 200) -> HTM
 
 
 def _address(scope: MutableMapping[str, Any], language: Language) -> str:
-    """Of the same page in another language; of the answer to a form, the fleet's."""
+    """The address of the same page in another language; for the answer to a form, the fleet's."""
     if scope.get("method", "GET") not in ("GET", "HEAD"):
         return f"/?{urlencode({QUERY: language.value})}"
     asked_for = [pair for pair in parse_qsl(scope["query_string"].decode("latin-1")) if pair[0] != QUERY]
