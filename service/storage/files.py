@@ -23,7 +23,7 @@ def content_hash(content: Content) -> str:
 
 
 def file_hash(path: Path) -> str:
-    """The same of a file, without holding it in memory."""
+    """The SHA-256 of a file, hexadecimal, without holding it in memory."""
     with path.open("rb") as file:
         return file_digest(file, "sha256").hexdigest()
 

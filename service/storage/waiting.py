@@ -14,7 +14,7 @@ from service.storage.folders import is_name, make_folder, named_durably, named_i
 FOLDER = "waiting"
 """Next to the folders of the uploads, whose names are two hexadecimal digits."""
 JOB_DELAY = timedelta(hours=1)
-"""How long a file may exist before its job is stored: a commit takes a moment."""
+"""Longest time from a file's arrival to its job's commit, which takes a moment."""
 MISSING = "The received file was deleted or changed on the disk of the service. Nothing was stored: upload it again."
 
 

@@ -117,7 +117,7 @@ class ServerFrozen(psycopg.OperationalError):
 
 
 def _until(work: PQGen[Any], end: float) -> Generator[Any, Any, Any]:
-    """The same work, which ends with an error after its deadline."""
+    """The work, ended with an error after its deadline."""
     try:
         state = next(work)
         while True:

@@ -50,11 +50,11 @@ class TableContents(_Part):
     columns: tuple[str, ...]
     rows: int = Field(ge=0)
     sha256: str = Field(pattern=HASH)
-    """Of the lines."""
+    """SHA-256 of the lines."""
 
     @property
     def member(self) -> str:
-        """Its name in the backup."""
+        """Name of the table in the backup."""
         return f"tables/{self.name}.jsonl"
 
 
@@ -63,9 +63,9 @@ class Manifest(_Part):
 
     format: Literal["imu-backup/1"] = "imu-backup/1"
     version: str
-    """Of the program that wrote it."""
+    """Version of the program that wrote it."""
     revision: str
-    """Of the schema."""
+    """Revision of the schema."""
     made_at: datetime
     tables: tuple[TableContents, ...]
     """In order of insertion: referenced tables come first."""
