@@ -74,7 +74,7 @@ class AccountPage:
 
     tokens: tuple[TokenLine, ...]
     secret: str
-    """Of the token that was just made; empty otherwise."""
+    """Secret of the token that was just made; empty otherwise."""
     roles: tuple[Role, ...]
 
 

@@ -1,4 +1,4 @@
-"""Who somebody is, accounts, tokens and the audit trail, over HTTP."""
+"""The sender's identity, accounts, tokens and the audit trail, over HTTP."""
 
 from dataclasses import dataclass
 from datetime import timedelta
@@ -32,7 +32,7 @@ Login = Annotated[str, Path(pattern=TEXT, max_length=60, description="The accoun
 
 
 class MeSchema(BaseModel):
-    """Who sent the request."""
+    """Sender of the request."""
 
     model_config = ConfigDict(from_attributes=True)
 
@@ -60,7 +60,7 @@ class NewAccount(Body, json_schema_extra={"example": {"login": "k.ito", "name": 
 
 
 class AccountChanges(Body, json_schema_extra={"example": {"role": "engineer"}}):
-    """What is to be otherwise."""
+    """Changes of an account."""
 
     name: Text | None = Field(default=None, description="As papers name the person.")
     role: Role | None = Field(default=None, description="What the person may do.")
@@ -93,7 +93,7 @@ class MadeToken(Token):
     """A new token with its secret."""
 
     secret: str
-    """What the program shows: `Authorization: Bearer …`. It is not shown again."""
+    """Secret that the program shows: `Authorization: Bearer …`. It is not shown again."""
 
 
 class AuditPage(BaseModel):
@@ -109,7 +109,7 @@ NO_ACCOUNT = "A token acts for an account: make the first account, and sign in w
 
 @router.get("/me", responses=errors())
 def read_me(person: PersonOf) -> MeSchema:
-    """Who sent this request, and what they may do."""
+    """The sender of this request, and their role."""
     return MeSchema.model_validate(person)
 
 

@@ -77,7 +77,7 @@ class Callback:
     code: str
     state: str
     issuer: str | None
-    """Of newer providers (RFC 9207)."""
+    """Issuer, from newer providers (RFC 9207)."""
 
 
 class Provider(Protocol):
@@ -107,14 +107,14 @@ class ProviderSettings:
 
 @dataclass(frozen=True)
 class Joining:
-    """Who may join from the provider, and in which role."""
+    """Rules by which people join from the provider, and their roles."""
 
     everybody: Role | None
     """Role of everybody at the provider; None admits only people with a role or an existing account."""
     by_claim: bool
     """Whether the provider decides the role, at every sign-in."""
     roles: Mapping[str, Role]
-    """By value of the claim."""
+    """Roles by value of the claim."""
 
     def role_of(self, groups: tuple[str, ...]) -> Role | None:
         """The highest role of a person's groups."""

@@ -27,7 +27,7 @@ SCOPE = "openid profile email"
 TIMEOUT = httpx.Timeout(5.0)
 """Seconds: a person is waiting."""
 MOST_BYTES = 256 * 1024
-"""Of an answer: metadata, a set of keys, a token."""
+"""Most bytes of an answer: metadata, a set of keys, a token."""
 LEEWAY = 60
 """Seconds by which clocks may differ."""
 LONGEST_SUBJECT = 255
