@@ -130,7 +130,7 @@ def list_uploads(
 
 @router.get("/{id}", responses=errors(404, 422))
 def read_upload(id: UploadId, store: Reading) -> UploadSchema:
-    """What became of one file; of a refused one every fault with its place."""
+    """The outcome of one file; for a refused one, every fault with its place."""
     refusal, job = refusal_number(id), job_number(id)
     if job is not None:
         return _by_job(store, job)
@@ -220,7 +220,7 @@ UnitType = Annotated[Text, Query(description="The last session of this stored ty
 
 @layouts_router.post("/preview", responses=errors(400, 413, 422), openapi_extra=REQUEST_BODY)
 def preview_layout(file: FileOf, storage: StorageOf, unit: Unit = "", unit_type: UnitType = "") -> PreviewSchema:
-    """How a table of one's own layout is understood, or with `mapping` would be read. Nothing is stored."""
+    """The reading of a table of custom layout, by the recognised mapping or by `mapping`. Nothing is stored."""
     result = preview(
         storage, held(file.content), file.filename, mapping=file.mapping, unit=unit.strip(), unit_type=unit_type.strip()
     )

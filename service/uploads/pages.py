@@ -20,7 +20,7 @@ from service.uploads.layout.form import Carried
 
 
 class Became(StrEnum):
-    """What became of an uploaded file, what needs a person first."""
+    """Outcomes of an uploaded file, those that need a person first."""
 
     FAILED = "failed"
     OPEN = "open"
@@ -42,7 +42,7 @@ class FileOutcome:
     pending: bool = False
     """Whether the diagnosis is being made."""
     is_table: bool = False
-    """Of custom layout: not read before its mapping is confirmed."""
+    """Whether it is a table of custom layout: not read before its mapping is confirmed."""
     carried: Carried | None = None
     """A table, for the page of its mapping."""
     job: Job | None = None
@@ -50,14 +50,14 @@ class FileOutcome:
 
     @property
     def became(self) -> Became:
-        """What became of the file."""
+        """Outcome of the file."""
         if self.receipt is not None:
             return Became.STORED if self.receipt.created else Became.BEFORE
         return Became.OPEN if self.is_table or (self.job is not None and self.job.is_open) else Became.FAILED
 
     @property
     def condition(self) -> Condition:
-        """Of the stored session; a refused file has none."""
+        """Condition of the stored session; a refused file has none."""
         if self.receipt is None:
             return condition_of(None)
         if self.receipt.state is RecordState.QUESTIONED:

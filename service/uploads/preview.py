@@ -37,13 +37,13 @@ class Preview:
     mapping: Json
     """Complete: with the settings of the parser."""
     fingerprint: str
-    """Of the headings."""
+    """Fingerprint of the headings."""
     remembered: bool
     """Whether the mapping is that of an earlier file."""
     seen: Json
     """Result of the first look: headings, cells, sheets."""
     session: CalibrationSession | None
-    """As it would be stored; None while something is missing."""
+    """Session as it would be stored; None while something is missing."""
     problems: tuple[Problem, ...]
 
 

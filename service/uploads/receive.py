@@ -82,7 +82,7 @@ def receive(reception: Reception, file: SentFile, now: datetime) -> Receipt:
 
 
 def receive_all(reception: Reception, files: Sequence[SentFile], now: datetime) -> tuple[Receipt | RefusedError, ...]:
-    """The same for several files; the error of an unusable one is returned."""
+    """Receives several files; the error of an unusable one is returned."""
     outcomes = tuple(_stored_or_refused(reception, file, now) for file in files)
     for outcome in outcomes:
         if isinstance(outcome, Receipt):

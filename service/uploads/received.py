@@ -127,7 +127,7 @@ async def _attaching(request: Request, storage: StorageOf, _: UploadSlotOf) -> A
 
 
 AttachingOf = Annotated[Arriving, Depends(_attaching, scope="function")]
-"""The same for a file that is attached and never read."""
+"""Files of an upload that is attached and never read."""
 ArrivingOf = Annotated[Arriving, Depends(_arriving, scope="function")]
 """Receives uploads, which are removed after processing."""
 
@@ -163,7 +163,7 @@ async def _sent_attachment(arriving: AttachingOf, person: PersonOf) -> SentAttac
 
 
 def _fault(name: str, text: str) -> str:
-    """Why a field of the form cannot be stored; empty where it can."""
+    """The reason why a field of the form cannot be stored; empty where it can."""
     if len(text) > LONGEST[name]:
         return say("is longer than {longest} characters", longest=LONGEST[name])
     return "contains a character that cannot be stored" if "\x00" in text else ""

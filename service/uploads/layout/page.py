@@ -32,7 +32,7 @@ OFFSETS = (
     "+05:30", "+05:45", "+06:00", "+06:30", "+07:00", "+08:00", "+08:45", "+09:00", "+09:30", "+10:00", "+10:30",
     "+11:00", "+12:00", "+12:45", "+13:00", "+13:45", "+14:00",
 )  # fmt: skip
-"""Of the time zones in use."""
+"""Offsets from UTC of the time zones in use."""
 
 
 @dataclass(frozen=True)

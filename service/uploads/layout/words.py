@@ -1,4 +1,4 @@
-"""What the page calls the fields of a mapping, and its faults in the words of a form instead of a file."""
+"""Names of a mapping's fields on the page, and its faults in the words of a form instead of a file."""
 
 import re
 from collections.abc import Mapping, Sequence
