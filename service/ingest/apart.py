@@ -86,7 +86,7 @@ class _Reporter:
 
 
 def progress_reporter() -> ProgressReporter:
-    """Of this process."""
+    """The progress reporter of this process."""
     return _Reporter.progress_reporter
 
 
@@ -298,7 +298,7 @@ class _ForkServer:
         return True
 
     def _start(self) -> None:
-        """Its standard input is the connection; it ends when that closes with this process."""
+        """Starts the process. Its standard input is the connection; it ends when that closes with this process."""
         self.stop()
         self._control, theirs = socket.socketpair()
         self._localer = os.getpid()

@@ -52,7 +52,7 @@ def unpack(line: bytes, most_bytes: int, receive: Callable[[Array], None]) -> An
 
 
 def plain_bytes(array: Array) -> memoryview:
-    """Its bytes, without a copy where the array is contiguous."""
+    """The bytes of an array, without a copy where it is contiguous."""
     return np.ascontiguousarray(array).reshape(-1).view(np.uint8).data
 
 

@@ -31,7 +31,7 @@ KINDS = (
 """Byte at which it stands, what stands there, and what is said."""
 WEB_PAGE = (b"<!doctype html", b"<html")
 MEMBERS = (("word/", DOCX), ("ppt/", SLIDES), ("xl/workbook.bin", XLSB))
-"""Of archives, by the beginning of a member's name."""
+"""Refusals of archives, by the beginning of a member's name."""
 
 
 def require_table(content: bytes | Path, filename: str) -> None:
@@ -46,7 +46,7 @@ def require_table(content: bytes | Path, filename: str) -> None:
 
 
 def require_workbook(members: Iterable[str], filename: str) -> None:
-    """The same for an archive that is no workbook, by the names of its members."""
+    """Refuses an archive that is no workbook, by the names of its members."""
     names = tuple(members)
     for beginning, said in MEMBERS:
         if any(name.startswith(beginning) for name in names):

@@ -22,12 +22,12 @@ from service.kit.limits import refusal
 
 IMU = "sensor_msgs/msg/Imu"
 CDR = "cdr"
-"""How ROS 2 writes messages, as bags name it."""
+"""ROS 2's encoding of messages, as bags name it."""
 NANOSECOND = 1e-9
 EARLIEST, LATEST = 946_684_800.0, 4_102_444_800.0
 """2000 and 2100, s since 1970: a clock outside counts from something else."""
 COLUMNS = 9
-"""Of an instance: two times, three rates, three accelerations, and which of the two are present."""
+"""Columns of an instance: two times, three rates, three accelerations, and which of the two are present."""
 Message = tuple[str, int, bytes]
 """Topic, time of the log in ns, content."""
 DAMAGED = (SerdeError, ValueError, IndexError, TypeError, OverflowError)
