@@ -71,7 +71,7 @@ class AuditCheck:
     """Whether the trail is as it was written."""
 
     lines: int
-    """How many there are."""
+    """Number of lines."""
     last: str
     """Hash of the last line; kept elsewhere, it shows later that none was cut off."""
     broken: int | None
