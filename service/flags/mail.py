@@ -16,7 +16,7 @@ SECONDS = 10.0
 
 @dataclass(frozen=True)
 class MailServer:
-    """Where e-mail is handed in, and who sends it."""
+    """Server that accepts e-mail, and its sender."""
 
     host: str = ""
     """Empty where none is sent."""
@@ -53,7 +53,7 @@ def _connected(server: MailServer) -> smtplib.SMTP:
 
 
 def _message(server: MailServer, address: str, notice: Notice) -> EmailMessage:
-    """The same at every attempt, by its identifier."""
+    """The message of a notice; its identifier is the same at every attempt."""
     message = EmailMessage()
     message["From"], message["To"] = server.sender, address
     message["Subject"] = f"{notice.unit}: {notice.text}".replace("\n", " ")[:200]

@@ -1,8 +1,8 @@
-"""Background work: what lies in the outbox is sent, signed, until it is accepted or given up; at least once.
+"""Background work: the messages of the outbox are sent, signed, until they are accepted or given up; at least once.
 
-An attempt is claimed before it is made. If the service dies in between, the claim runs out and the notice is sent
-again under the same key, by which the receiver knows it. Every receiver has a turn of its own: while one keeps the
-service waiting, the others get theirs, and a service that stops waits for none.
+An attempt is claimed before it is made. If the service dies in between, the claim runs out and the notice is sent again
+under the same key, by which the receiver knows it. Every receiver has a turn of its own: while one keeps the service
+waiting, the others get theirs, and a service that stops waits for none.
 """
 
 import asyncio
@@ -74,23 +74,23 @@ def deliver_due(storage: Storage, ways: "Ways", clock: Callable[[], datetime], m
 
 @dataclass(frozen=True)
 class Ways:
-    """Where messages may go."""
+    """Permitted ways of messages."""
 
     hosts: tuple[str, ...] = ()
-    """Of webhooks."""
+    """Hosts of webhooks."""
     mail: MailServer = NO_MAIL
 
 
 @dataclass(frozen=True)
 class Outbox:
-    """What is to be sent, and where it may go."""
+    """Messages to be sent, and their permitted ways."""
 
     storage: Storage
     ways: Ways
     clock: Callable[[], datetime]
 
     def claim(self, busy: Collection[int]) -> tuple[Outgoing, ...]:
-        """What is due, oldest first, but for receivers that have their turn."""
+        """The due messages, oldest first, except for receivers that have their turn."""
         now = self.clock()
         with self.storage.database.reading() as store:
             if not Webhooks(store).is_due(now, busy):
@@ -179,7 +179,9 @@ async def _attempt(outgoing: Outgoing, ways: Ways, http: "httpx.AsyncClient") ->
 
 
 def _after(outgoing: Outgoing, accepted: bool, now: datetime) -> tuple[DeliveryState, datetime]:
-    """What it is then, and when it ended or is sent next: pauses double from one attempt to the next."""
+    """The state of a delivery after an attempt, and its end or next attempt: pauses double from one attempt to the
+    next.
+    """
     if accepted:
         return DeliveryState.DELIVERED, now
     if outgoing.attempt >= MOST_ATTEMPTS:

@@ -65,7 +65,7 @@ class FlagCard:
     tone: str
     """Name of the style and the icon."""
     life: tuple[tuple[Notice, str], ...]
-    """What happened and the word for it, newest first."""
+    """Events with their word, newest first."""
 
     @property
     def stand(self) -> str:
@@ -79,7 +79,7 @@ class FlagCard:
 
     @property
     def name(self) -> str:
-        """Of the unit, the type or the stand that it is about."""
+        """Name of the unit, the type or the stand that it is about."""
         return self.flag.subject or self.flag.unit
 
     @property
@@ -102,13 +102,13 @@ class FlagsPage:
     cards: tuple[FlagCard, ...]
     matters: Mapping[str, str]
     states: Mapping[str, str]
-    """What the list can be narrowed to, in words."""
+    """Possible filters of the list, in words."""
     assigned: Mapping[str, str]
-    """Whose flags can be asked for: what stands in the address, and the name or words."""
+    """Assignees to filter by: value in the address, and the name or words."""
     people: tuple[str, ...]
     """Whom a flag can be given to; empty where anybody may be named."""
     pending: str
-    """What is still being worked out, and may change the list; empty where nothing is."""
+    """Pending work that may change the list, in words; empty where there is none."""
 
 
 def flags_page(

@@ -1,4 +1,4 @@
-"""Flags and what happened to them."""
+"""Flags and their notices."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -76,7 +76,7 @@ def notice_of(row: NoticeRow, serial: str) -> Notice:
 
 @dataclass(frozen=True)
 class FlagQuery(ListQuery):
-    """Which flags are wanted, newest first, and after or before which number."""
+    """Filter of flags, newest first, and the number after or before which the list goes on."""
 
     unit: str | None = None
     state: FlagState | None = None
@@ -89,7 +89,9 @@ class FlagQuery(ListQuery):
     stand: str | None = None
     """About a stand, whether units, single sessions or all of them together tell of it."""
     assignee: Assignee | None = None
-    """Who looks after it, by the account or, where the flag names none, by the name; of nobody none is anybody's."""
+    """Assignee, by the account or, where the flag names none, by the name; the one without a name stands for unassigned
+    flags.
+    """
 
 
 IS_OF_UNIT = FlagRow.scope == Scope.UNIT
@@ -209,12 +211,12 @@ class Flags(Queries):
         return page.forward(_with_lives(rows))
 
     def assignee_of(self, id: int) -> Assignee:
-        """Who looks after a flag."""
+        """The person assigned to a flag."""
         query = select(FlagRow.assignee, FlagRow.assignee_login).where(FlagRow.id == id)
         return Assignee(*self._session.execute(query).one())
 
     def assignees(self) -> tuple[Assignee, ...]:
-        """Who looks after open flags, by name."""
+        """The persons assigned to open flags, by name."""
         query = select(FlagRow.assignee, FlagRow.assignee_login).distinct().order_by(FlagRow.assignee)
         found = self._session.execute(query.where(FlagRow.state != FlagState.RESOLVED, FlagRow.assignee != ""))
         return tuple(Assignee(name, login) for name, login in found)

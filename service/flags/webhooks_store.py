@@ -1,4 +1,4 @@
-"""Addresses that are notified, and the outbox of what is on its way to them."""
+"""Addresses that are notified, and the outbox of messages to them."""
 
 from collections.abc import Collection
 from dataclasses import replace
@@ -81,8 +81,9 @@ class Webhooks(Queries):
         )
 
     def claim(self, now: datetime, until: datetime, limit: int, but: Collection[int] = ()) -> tuple[Outgoing, ...]:
-        """What is due, oldest first, but for some webhooks; claimed until a time: nobody else sends it before, and then
-        somebody does."""
+        """The due messages, oldest first, except for some webhooks; claimed until a time: nobody else sends them
+        before, and then somebody does.
+        """
         query = (
             select(DeliveryRow, WebhookRow, NoticeRow, UnitRow.serial, FlagRow)
             .join(WorkRow, _WORK)
