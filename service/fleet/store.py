@@ -57,7 +57,7 @@ Other = aliased(SessionRow)
 EVERY = 1_000_000
 """Units of a fleet at most, where a count is of all."""
 CHOICES = ("types", "stands", "lots", "locations", "custodians")
-"""Of `FleetChoices`."""
+"""Fields of `FleetChoices`."""
 
 
 @dataclass(frozen=True)
@@ -196,7 +196,7 @@ class Fleet(Queries):
         )
 
     def condition(self) -> FleetCondition:
-        """How many units are in which condition."""
+        """The number of units in each condition."""
         return _condition(self._session.execute(_tallies().add_columns(OPEN_OF_GROUPS)).all())
 
     def condition_at(self, now: datetime) -> FleetCondition:
@@ -242,7 +242,7 @@ def _tally(row: Sequence[Any]) -> Tally:
 
 
 def _condition(rows: Sequence[Sequence[Any]]) -> FleetCondition:
-    """Of tallies, each with the open flags of types and stands at its end."""
+    """The condition from tallies, each with the open flags of types and stands at its end."""
     tallies = [_tally(row[:-1]) for row in rows if row[0] != UNCALIBRATED]
     uncalibrated = sum(row[4] for row in rows if row[0] == UNCALIBRATED)
     return FleetCondition.of(tallies, rows[0][-1] if rows else 0, uncalibrated)
@@ -263,11 +263,11 @@ LAST = (
     SessionRow.margin,
 )
 FOUND = (DiagnosisRow.state, DiagnosisRow.summary, DiagnosisRow.gain_in_words, DiagnosisRow.reservations)
-"""What a line of the fleet shows of the latest session and of its diagnosis; the rest is long, and stays unread."""
+"""Columns of the diagnosis in a line of the fleet; the rest is long, and stays unread."""
 
 
 _Outlook, _Derivation = aliased(WorkRow), aliased(WorkRow)
-"""What is still to be made of a unit."""
+"""Pending work on a unit."""
 Summaries = Select[
     UnitRow, str, ConditionRow, SessionRow, DiagnosisRow, datetime | None, str, str, str, Any, *tuple[Any, ...]
 ]
@@ -279,7 +279,7 @@ _WORST = (
     & (DecisionRow.sensor == SessionRow.worst_sensor)
     & (DecisionRow.parameter == SessionRow.worst_parameter)
 )
-"""What was decided of the parameter that a verdict hangs on."""
+"""Condition for the decision on the parameter that sets a verdict."""
 
 
 def _listed(retired: bool | None) -> Select[int]:
@@ -329,7 +329,7 @@ def _summaries(units: FromClause = UnitRow.__table__) -> Summaries:
 
 
 def _waiting() -> ScalarSelect[int]:
-    """How many accepted sessions of a unit are to be judged or weighed."""
+    """The number of accepted sessions of a unit that are to be judged or weighed."""
     conditions = (Other.unit_id == UnitRow.id, is_waiting(Other.basis), Other.state == RecordState.ACCEPTED)
     return select(func.count()).select_from(Other).where(*conditions).scalar_subquery()
 

@@ -1,4 +1,4 @@
-"""Which units a list holds and in which order, and what the fleet page announces above it."""
+"""Conditions and orders of lists of units, and the announcements above the list on the fleet page."""
 
 from sqlalchemy import ColumnElement, String, Subquery, case, cast, false, func, literal, select
 
@@ -88,7 +88,7 @@ UNITS: Listing[FleetQuery] = Listing(
 
 
 WIDEST = (Level.STAND, Level.TYPE, Level.UNIT)
-"""What concerns most units first."""
+"""Levels of groups, that of most units first."""
 
 
 class Announcements(Queries):
