@@ -1,7 +1,7 @@
 """Step: a checked session → its calibration under the model in force.
 
-A recording in service has none of its own: it is compared with its unit's calibration, and that calibration is moved by
-what the recording shows.
+A recording in service has none of its own: it is compared with its unit's calibration, which is moved by the change
+that the recording shows.
 """
 
 from dataclasses import dataclass, replace
@@ -22,7 +22,7 @@ from service.storage.queries import Store
 
 @dataclass(frozen=True, eq=False)
 class CalibrationBasis:
-    """What is stored already that the calibration of a session rests on."""
+    """Stored basis of a session's calibration."""
 
     model: Model
     compared_with: Calibration | None
@@ -36,7 +36,7 @@ class ReferenceComparison:
     reference: Calibration
     result: ParityResult
     started_at: str | None = None
-    """Of the recording, in UTC; None where its file does not say."""
+    """Start of the recording, UTC; None where its file does not state it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,14 +45,14 @@ class Calibrated:
 
     checked: Checked
     model: Model
-    """That it was calibrated under."""
+    """Model of the calibration."""
     calibration: Calibration
     comparison: ReferenceComparison | None
-    """Of a recording in service; None for every other programme."""
+    """Comparison of a recording in service; None for every other programme."""
 
 
 def basis_of(store: Store, new: Checked, model: Model) -> CalibrationBasis:
-    """What a calibration under a model needs of the store; ScheduleError for a recording of an uncalibrated unit."""
+    """The stored basis of a calibration under a model; ScheduleError for a recording of an uncalibrated unit."""
     is_recording = new.session.programme == IN_SERVICE
     return CalibrationBasis(model, calibration_to_compare_with(store, new) if is_recording else None)
 

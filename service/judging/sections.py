@@ -1,4 +1,4 @@
-"""What a recording in service would have shown: from what size a change of one sensor is seen."""
+"""Sensitivity of a recording in service: the sizes from which a change of one sensor is detected."""
 
 from dataclasses import dataclass
 
@@ -23,13 +23,13 @@ class SightRow:
 
 @dataclass(frozen=True)
 class ParityView:
-    """What parity sees of a block."""
+    """Results of parity for a block."""
 
     level: str
     parameters: tuple[str, ...]
     rows: tuple[SightRow, ...]
     parts: tuple[str, ...]
-    """What it says of the parts before and after a sensor fails."""
+    """Results of parity for the parts before and after a sensor fails."""
 
 
 def parity_view(result: ParityResult) -> ParityView:

@@ -1,4 +1,4 @@
-"""What temperature does to a verdict, in words."""
+"""Effect of temperature on a verdict, in words."""
 
 from collections.abc import Iterator, Sequence
 
@@ -91,8 +91,9 @@ def elsewhere(outside: float, now: float, known: tuple[float, float], worth: str
 
 
 def far_from_reference(celsius: float | None, reference: Residuals) -> str:
-    """That a recording was made far from the temperatures of its calibration, and what to do, in a sentence; empty
-    where it was not, or where nothing says it."""
+    """The sentence that a recording was made far from the temperatures of its calibration, with advice; empty where it
+    was not, or where they are not known.
+    """
     known = covered(reference, ())
     if celsius is None or known is None:
         return ""
@@ -128,7 +129,7 @@ def span_in_words(celsius: Array | None) -> str:
 
 
 def covered_in_words(known: CoveredTemperatures | None) -> str:
-    """The same of what a unit's calibrations cover."""
+    """The temperatures that a unit's calibrations cover."""
     return "not known" if known is None else _span(known.lowest, known.highest)
 
 
@@ -139,7 +140,7 @@ def _span(low: float, high: float) -> str:
 
 
 def at_about(celsius: float) -> str:
-    """Where to measure again."""
+    """The advice to measure again at a temperature."""
     return say("measure again at about {celsius}, or calibrate over temperature", celsius=in_degrees(celsius))
 
 

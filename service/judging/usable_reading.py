@@ -1,4 +1,4 @@
-"""What units may be used for, by their serial numbers."""
+"""Permitted use of units, by their serial numbers."""
 
 from collections.abc import Collection, Sequence
 from datetime import datetime
@@ -22,7 +22,7 @@ AT_ONCE = 100
 
 
 def usable_of(store: Store, units: Sequence[UnitSummary], now: datetime) -> dict[str, Usable]:
-    """Of units, by serial number."""
+    """The permitted use of units, by serial number."""
     found: dict[str, Usable] = {}
     for start in range(0, max(len(units), 1), AT_A_TIME):
         facts = UseStore(store).facts(units[start : start + AT_A_TIME], now)
@@ -56,6 +56,6 @@ def settle_all(storage: Storage) -> None:
 
 
 def usable_unit(store: Store, serial: str, now: datetime) -> Usable:
-    """Of one; NotFoundError when there is none of that serial number."""
+    """The permitted use of one unit; NotFoundError where there is none of that serial number."""
     unit = Fleet(store).get(serial)
     return usable_of(store, (unit,), now)[serial]
