@@ -43,7 +43,7 @@ class SettingsPage:
 
     version: str
     rows: tuple[SettingRow, ...]
-    """What somebody set first, then by name."""
+    """Settings that somebody set first, then by name."""
 
 
 def settings_page(settings: Settings) -> SettingsPage:
@@ -113,7 +113,7 @@ class FieldHelp:
 
 @dataclass(frozen=True)
 class Answer:
-    """What a call may answer."""
+    """Possible answer to a call."""
 
     status: str
     text: str
@@ -322,12 +322,12 @@ KEYS = (
 
 
 def plainly(meaning: str) -> str:
-    """Without the marks that the glossary is set with."""
+    """The meaning without the markup of the glossary."""
     return meaning.replace("\\|", "|").replace("*", "")
 
 
 COUNTS = "It counts."
-"""Of an accepted record, where others say what they are not."""
+"""Meaning of an accepted record; the other states state why they do not count."""
 
 
 @dataclass(frozen=True)
@@ -342,7 +342,7 @@ class HelpPage:
 
 
 def help_page() -> HelpPage:
-    """It is the same for everybody."""
+    """The help page, the same for everybody."""
     states = tuple((STATES[state], MEANINGS[state] or COUNTS) for state in RecordState)
     return HelpPage(WHEN, states, MEASURES, tuple((word, plainly(meaning)) for word, meaning in WORDS), KEYS)
 
@@ -352,7 +352,7 @@ router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
 
 @router.get("/help")
 def show_help(request: Request) -> HTMLResponse:
-    "What to do, and what the terms mean."
+    """Shows advice for common tasks, and the meaning of the terms."""
     return render(request, "help.html", help_page())
 
 
@@ -364,5 +364,5 @@ def show_reference(request: Request) -> HTMLResponse:
 
 @router.get("/settings")
 def show_settings(request: Request, settings: SettingsOf) -> HTMLResponse:
-    """What is in force, and where it comes from."""
+    """Shows the settings in force, and their sources."""
     return render(request, "settings.html", settings_page(settings))

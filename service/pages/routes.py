@@ -180,7 +180,7 @@ def show_session(
 
 @router.get("/sessions/{id}/outcome")
 def show_outcome(request: Request, store: Reading, settings: SettingsOf, id: Key) -> HTMLResponse:
-    """What became of an upload by now, as the card of the upload page."""
+    """Shows the present outcome of an upload, as the card of the upload page."""
     session = Sessions(store).get(id)
     outcome = outcome_of(session, Diagnoses(store).summary(id), retired_in_words(Register(store).get(session.unit)))
     return render(request, "outcome.html", upload_page((outcome,), settings))

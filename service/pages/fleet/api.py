@@ -51,7 +51,7 @@ REPORTS = {**FORMS, XLSX: "xlsx", PDF: "pdf"}
 
 @router.get("", responses=errors())
 def read_fleet(store: Reading) -> FleetCondition:
-    """How many units are in which condition."""
+    """The number of units in each condition."""
     return Fleet(store).condition()
 
 

@@ -1,1 +1,1 @@
-"""What waits for a person."""
+"""Work that waits for a person."""

@@ -1,4 +1,4 @@
-"""What waits for a person, over HTTP."""
+"""Work that waits for a person, over HTTP."""
 
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
@@ -13,13 +13,14 @@ router = APIRouter(prefix="/review", tags=["fleet"])
 
 
 class ReviewQueue(BaseModel):
-    """What waits for whoever asks."""
+    """Work that waits for the caller."""
 
     waiting: tuple[ToDo, ...] = Field(description="By kind, 15 of each at most; empty where nothing waits.")
 
 
 @router.get("", responses=errors())
 def read_review(store: Reading, person: PersonOf, now: Now, language: LanguageOf) -> ReviewQueue:
-    """What the caller can do something about: own flags; for crews overdue units; for engineers questioned sessions,
-    certificates to sign, flags without an assignee and failed work."""
+    """The work that the caller can do: own flags; for crews overdue units; for engineers questioned sessions,
+    certificates to sign, flags without an assignee and failed work.
+    """
     return ReviewQueue(waiting=tuple(said_in(to_do, language) for to_do in waiting_for(store, person, now)))

@@ -23,7 +23,7 @@ router = APIRouter(include_in_schema=False)
 
 @router.get("/review")
 def show_review(request: Request, store: Reading, person: PersonOf, now: Now) -> HTMLResponse:
-    """What waits for whoever looks, by role."""
+    """Shows the work that waits for the visitor, by role."""
     waiting = waiting_for(store, person, now)
     sections = ((kind, heading, [w for w in waiting if w.kind is kind]) for kind, heading in HEADINGS.items())
     return render(request, "review.html", tuple(section for section in sections if section[-1]))

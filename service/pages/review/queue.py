@@ -1,4 +1,4 @@
-"""What waits for a person, by who can act: sessions, certificates, flags, failed work, overdue units."""
+"""Work that waits for a person, by role: sessions, certificates, flags, failed work, overdue units."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -24,14 +24,14 @@ from service.sessions.store import Sessions
 from service.storage.queries import Store
 
 MOST = 15
-"""Of each kind; the page of its own has all."""
+"""Most entries of each kind; its own page has all."""
 
 
 TO_REVIEW, TO_APPROVE = "Certificate {number} is to be reviewed.", "Certificate {number} is to be approved."
 
 
 class WaitingKind(StrEnum):
-    """What waits."""
+    """Kinds of waiting work."""
 
     MINE = "assigned-to-me"
     OVERDUE = "overdue"
@@ -51,7 +51,7 @@ class ToDo:
     of: str
     """The unit, the session's unit, or the piece of work."""
     text: str
-    """What is to be done or known, in a sentence."""
+    """Action or fact to know, in a sentence."""
     since: datetime | None
     """Since when, UTC; null where that is not known."""
     page: str
@@ -59,7 +59,7 @@ class ToDo:
 
 
 def waiting_for(store: Store, person: Person, now: datetime) -> tuple[ToDo, ...]:
-    """What this person can do something about, kind by kind."""
+    """The work that this person can do, kind by kind."""
     found = list(_flags(store, WaitingKind.MINE, Assignee(person.name, person.login))) if person.login else []
     if person.may(Role.CREW):
         found += _overdue(store, now)

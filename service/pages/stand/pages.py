@@ -1,4 +1,4 @@
-"""The pages of stands: may each be used today, and what its units show of it."""
+"""The pages of stands: permitted use of each today, and its condition by its units."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -67,7 +67,7 @@ class StandLine:
     certificates: tuple[StandCertificate, ...]
     """Oldest issue first."""
     flags: int
-    """How many are open that find it at fault."""
+    """Number of open flags that find it at fault."""
     is_pending: bool
     """Whether what stands do is being worked out with the latest records."""
 
@@ -79,14 +79,14 @@ class StandReport:
     line: StandLine
     flags: tuple[Flag, ...]
     units: tuple[UnitSummary, ...]
-    """Whose latest session was measured on it, the latest first."""
+    """Units whose latest session was measured on it, the latest first."""
     uses: Mapping[str, Usable]
     sessions: tuple[StoredSession, ...]
     """Newest first."""
     models: tuple[ModelRevision, ...]
     """Causes that engineers accepted into its model, and that hold."""
     errors: tuple[StandError, ...] = ()
-    """As the certificate of today states them."""
+    """Errors of the stand as stated by the certificate of today."""
 
 
 def every_stand(store: Store) -> tuple[StandLine, ...]:
@@ -143,12 +143,12 @@ class StandsPage:
     """Everything the list of stands shows."""
 
     rows: tuple[ListedStand, ...]
-    """What needs a hand first, then by name."""
+    """Stands that need action first, then by name."""
 
 
 @dataclass(frozen=True)
 class ShiftRow:
-    """What the units say of one quantity of the stand: a shift, or that there is none."""
+    """Evidence of the units on one quantity of the stand: a shift, or that there is none."""
 
     what: str
     size: str
@@ -170,7 +170,7 @@ class StandPage:
     certificates: tuple[tuple[str, str, str, str], ...]
     """Number, issued by, issued on, valid until; the latest first."""
     errors: tuple[tuple[str, str], ...]
-    """What the certificate of today states an uncertainty of, and ± U."""
+    """Errors stated by the certificate of today, and ± U."""
     flags: tuple[FlagCard, ...]
     shifts: tuple[ShiftRow, ...]
     seating: tuple[tuple[str, str], ...]
@@ -182,7 +182,7 @@ class StandPage:
     causes: tuple[AcceptedCause, ...]
     group: GroupSection | None
     more: tuple[str, ...]
-    """Of ``flags``, ``units`` and ``sessions``, those of which not all are listed."""
+    """Names among ``flags``, ``units`` and ``sessions`` of the lists that are cut."""
 
 
 def stands_page(stands: Sequence[StandLine], now: datetime) -> StandsPage:

@@ -1,7 +1,7 @@
-"""What the laws over temperature of a type's units are alike in: learned from their sessions, put in force, taken back.
+"""Temperature laws common to the units of a type: learned from their sessions, put in force, taken back.
 
-They hold like tolerances: from the next session on, with a revision of their own. So no verdict depends on what arrived
-of other units meanwhile.
+They hold like tolerances: from the next session on, with a revision of their own. So no verdict depends on sessions of
+other units that arrived meanwhile.
 """
 
 from collections.abc import Iterator
@@ -70,7 +70,7 @@ def learned(storage: Storage, name: str) -> tuple[TypeLaw, ...]:
 
 
 def _history(store: Store, serial: str) -> Iterator[UnitHistory]:
-    """Of a unit's latest epoch, where its sessions were at different temperatures; else none."""
+    """The history of a unit's latest epoch, where its sessions were at different temperatures; else none."""
     places = [p for p in places_of(known_unit(store, Units(store).key(serial))) if p.session.programme != IN_SERVICE]
     reference = next((p.reference for p in reversed(places) if p.reference is not None), None)
     sessions = [p.session for p in places if reference is not None and p.reference is reference]

@@ -73,11 +73,11 @@ class TypeReport:
 
     line: TypeLine
     kinds: Mapping[str, str]
-    """Of its sensors, where a session told."""
+    """Kinds of its sensors, where a session stated them."""
     revisions: tuple[ToleranceRevision, ...]
-    """Of its tolerances, oldest first."""
+    """Revisions of its tolerances, oldest first."""
     setters: Mapping[datetime, str]
-    """Who set the tolerances, by when; the first ones nobody did."""
+    """Persons who set the tolerances, by time; the first ones have none."""
     flags: tuple[Flag, ...]
     """Open ones on what its sessions show together."""
     units: tuple[UnitSummary, ...]
@@ -111,10 +111,10 @@ def type_report(store: Store, name: str, now: datetime) -> TypeReport:
 
 
 DEFAULTS = "the service itself, with the first session of the type"
-"""Who set tolerances that nobody set."""
+"""Words in place of a person, for the first tolerances of a type."""
 NOT_JUDGED = "not judged"
 KINDS = {ACCELEROMETER: "accelerometer", GYROSCOPE: "gyro"}
-"""Of sensors, as people call them."""
+"""Usual names of the kinds of sensor."""
 
 
 @dataclass(frozen=True)
@@ -154,7 +154,7 @@ class RevisionRow:
     since: datetime
     who: str
     limits: tuple[tuple[str, str], ...]
-    """What is allowed of what."""
+    """Parameters with their limits."""
     laws: str
     """From how many units the temperature laws in force are."""
 
@@ -175,11 +175,11 @@ class TypePage:
     causes: tuple[AcceptedCause, ...]
     group: GroupSection | None
     fields: tuple[ToleranceField, ...]
-    """Of the form that sets other tolerances."""
+    """Fields of the form that sets other tolerances."""
     days: str
     """The longest interval, in the form."""
     share: str
-    """Of the tolerance, %, from which on a change has a flag, in the form."""
+    """Share of the tolerance, %, from which on a change has a flag, in the form."""
     laws: tuple[str, ...]
     """Over temperature, that are in force."""
 
@@ -311,7 +311,7 @@ def set_laws(
 def preview_limits(
     request: Request, name: Key, form: Annotated[dict[str, str], Depends(_form)], store: Reading, settings: SettingsOf
 ) -> HTMLResponse:
-    """What other tolerances would change; nothing is stored."""
+    """Shows the effect of other tolerances; nothing is stored."""
     known = UnitTypes(store).get(name)
     asked = wanted(known, form)
     found = preview_tolerances(

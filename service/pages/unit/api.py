@@ -1,4 +1,4 @@
-"""Units: their condition, history and known breaks, and whether they may be used."""
+"""Units: their condition, history and known breaks, and their permitted use."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -60,7 +60,7 @@ HISTORY_COLUMNS = {
 
 
 NO_AXIS = (None, None, None)
-"""Of a parameter that is a number."""
+"""Axis of a parameter that is a number."""
 
 
 def history_table(serial: str, points: Sequence[HistoryPoint]) -> "pl.DataFrame":
@@ -233,6 +233,6 @@ def read_usable(
 
 
 def _answer(request: Request, found: Usable) -> UsableAnswer:
-    """With the address of the correction."""
+    """The answer with the address of the correction."""
     link = None if found.correction is None else request.url_for("read_correction", id=found.correction).path
     return UsableAnswer(**{**vars(found), "correction": link})

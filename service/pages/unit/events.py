@@ -1,4 +1,4 @@
-"""What happened to a unit, in one list; and the unit as it was found and as it was left."""
+"""Events of a unit in one list; and the unit as found and as left."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -41,7 +41,7 @@ class UnitEvent:
     """None for a service, which is a break in the history."""
     service: Service | None = None
     withdrawn: str = ""
-    """Of a service that was withdrawn: when, by whom and why."""
+    """Time, person and reason of a service's withdrawal; empty where it is not withdrawn."""
 
 
 @dataclass(frozen=True)

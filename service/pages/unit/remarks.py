@@ -38,7 +38,7 @@ class Remarks:
     notes: tuple[Note, ...]
     files: tuple[AttachmentLine, ...]
     limit: str
-    """How large a file may be, in words."""
+    """Size limit of a file, in words."""
 
 
 def remarks(unit: str, session: str, notes: Sequence[Note], files: Sequence[Attachment], most_bytes: int) -> Remarks:

@@ -70,7 +70,7 @@ class SaidUnit(SaidVerdict, UnitSummary):
 
 
 def said_unit(unit: UnitSummary) -> SaidUnit:
-    """With its verdict in words."""
+    """The unit with its verdict in words."""
     return SaidUnit(**said(unit))
 
 
@@ -82,7 +82,7 @@ class UnitInUse(SaidUnit):
     usable: bool
     """In doubt it is false."""
     use: str
-    """The same in words, with what to do."""
+    """Permitted use in words, with the action."""
 
 
 def units_in_use(store: Store, units: Sequence[UnitSummary], now: datetime) -> list[UnitInUse]:
@@ -122,12 +122,12 @@ Parameter = Literal[
     "scale", "bias", "quadratic", "axis", "misalignment",
     "quantisation", "white-noise", "bias-instability", "random-walk",
 ]  # fmt: skip
-"""What a calibration gives, and the terms of noise at rest."""
+"""Parameters of a calibration, and the terms of noise at rest."""
 TableForm = Literal["json", "csv", "parquet", "arrow"]
 
 
 class HistoryAsked(BaseModel):
-    """Which part of a unit's history is wanted, and in which form."""
+    """Part and form of a unit's history."""
 
     parameter: Parameter | None = Field(None, description="Only this parameter.")
     sensor: Text | None = Field(None, description="Only this sensor.")
@@ -150,7 +150,7 @@ class HistoryAsked(BaseModel):
 
     @property
     def query(self) -> HistoryQuery:
-        """The same for the store."""
+        """The query to the store."""
         return copied(HistoryQuery, self, offset=self.window.offset, newest=False, noise=None, kind=None)
 
 
