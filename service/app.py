@@ -89,7 +89,9 @@ def _application(settings: Settings, clock: Callable[[], datetime], optional: di
 
 
 def _at_work(application: Application) -> Callable[[FastAPI], AbstractAsyncContextManager[None]]:
-    """From start to stop: work is done in the background, and the database is closed at the end."""
+    """The lifespan of the service: work is done in the background from start to stop, and the database is closed at the
+    end.
+    """
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:

@@ -38,7 +38,7 @@ class ServiceError(Exception):
 
 
 class SignInError(ServiceError):
-    """Somebody must sign in first, or did so wrongly."""
+    """The sender must sign in first, or did so wrongly."""
 
     status = HTTPStatus.UNAUTHORIZED
 

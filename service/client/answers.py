@@ -103,7 +103,7 @@ class Point:
     upper: float | None
     reference: float | None
     deviation: float | None
-    """From the reference: relative for scale, else SI."""
+    """Change from the reference: relative for scale, else SI."""
     expanded: float | None
     """U of the deviation."""
     tolerance: float | None
@@ -170,7 +170,7 @@ class Usable:
     """Whether a unit may be used now."""
 
     usable: bool
-    """In doubt false."""
+    """Whether the unit may be used; false in doubt."""
     why: str
     reasons: tuple[str, ...]
     reservations: tuple[str, ...]

@@ -33,7 +33,7 @@ from service.sessions.words.curves import curves_in_words
 from service.sessions.words.readings import fit_in_words
 
 NOT_OBSERVABLE = "not observable"
-"""In place of a value that the session does not show."""
+"""Text in place of a value that the session does not observe."""
 Result = tuple[CalibrationSession, Calibration]
 
 
@@ -107,7 +107,7 @@ def _axes_of_block(calibration: Calibration) -> RenderableType:
 
 
 def _cell(sensor: SensorCalibration, parameter: str, estimate: Estimate) -> str:
-    """Empty where the session does not concern the parameter."""
+    """The value with U; empty where the session does not concern the parameter."""
     if parameter not in sensor.observable:
         return ""
     if estimate.value is None:

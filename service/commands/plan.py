@@ -38,7 +38,7 @@ from service.planning.words import (
 )
 
 PARAMETERS = ("scale", "bias", "quadratic", "axis")
-"""In the order of the table."""
+"""Parameters in the order of the table."""
 MOST_ORIENTATIONS = 200
 """Most orientations of a plan: nobody turns a block by hand more often."""
 

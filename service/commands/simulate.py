@@ -60,11 +60,11 @@ Noise = Annotated[
 FIRST_SESSION = datetime(2026, 1, 12, 9, 0, tzinfo=UTC)
 """Fixed, so that the same seed gives the same files wherever the clock is past them."""
 INTERVAL = timedelta(days=60)
-"""From one session to the next: two months, as the help says."""
+"""Time from one session to the next: two months, as the help says."""
 MOST_AFTER = 4
 """Sessions that are dated from the first date on; those of a longer series end with them."""
 FLIGHT_AFTER = timedelta(days=30)
-"""From a calibration to the recording in service that follows it."""
+"""Time from a calibration to the recording in service that follows it."""
 KNOWN = (TWO_AXIS_STAND, ARBITRARY_ORIENTATIONS, IN_SERVICE, ROTATION_ALIGNMENT, RATE_TABLE, THERMAL)
 """Programmes that can be simulated."""
 STILL: dict[str, Callable[[CalibrationSession, np.random.Generator], CalibrationSession]] = {

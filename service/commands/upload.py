@@ -86,7 +86,7 @@ class _WatchedFile:
         return self.file.fileno()
 
     def seek(self, place: int) -> int:
-        """To its beginning, before it is sent."""
+        """Returns to the beginning before it is sent."""
         return self.file.seek(place)
 
 

@@ -84,7 +84,7 @@ def norms(kind: str, sensors: int) -> Array:
 
 
 SENSORS = 6
-"""On every cone, as in the published block."""
+"""Sensors on every cone, as in the published block."""
 TYPE_NAME = {ACCELEROMETER: "RA-6", GYROSCOPE: "RG-6"}
 """Unit type by kind of sensor."""
 TOLERANCES = {

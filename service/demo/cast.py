@@ -12,7 +12,7 @@ START = datetime(2023, 11, 14, 8, 30, tzinfo=UTC)
 END = datetime(2026, 11, 12, 8, 30, tzinfo=UTC)
 """Fixed, so that the demonstration is always the same."""
 YEARS = 3.0
-"""From start to end."""
+"""Years from start to end."""
 
 
 @dataclass(frozen=True)
@@ -114,7 +114,7 @@ def _replaced(sensor: int, at: datetime) -> Intervention:
 GAINS = {0: 72.0, 3: -58.0}
 """Sensors of BA-109 whose amplifiers drift, and how far until they are adjusted, ppm."""
 ADJUSTED = datetime(2025, 2, 11, 9, 0, tzinfo=UTC)
-"""When the unit that shows a service was adjusted."""
+"""Time at which the unit that shows a service was adjusted."""
 UNTIL_ADJUSTED = (ADJUSTED - START).days / 365.25
 """Years after the start."""
 

@@ -38,7 +38,7 @@ from service.units.remarks_store import Notes
 from service.uploads.receive import upload
 
 UPLOADED_AFTER = timedelta(hours=3)
-"""From the session to its upload; the demonstration has its own clock, so that it is always the same."""
+"""Time from the session to its upload; the demonstration has its own clock, so that it is always the same."""
 Done = Intervention | DemoHandling | Remark
 """Acts of people between sessions."""
 FILES = sum(member.files for member in CAST)

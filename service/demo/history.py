@@ -73,13 +73,13 @@ TURNED_STAND, TURNED_AT = "ODG-3", START + 2.2 * YEAR
 TURN = np.array([4.0, -7.0, 11.0]) * ARCSEC
 """Turn of every block since then by the seat of that stand, rad: nobody noticed."""
 FLOWN_AFTER = timedelta(days=8, hours=3)
-"""From a calibration to the recording in service."""
+"""Time from a calibration to the recording in service."""
 TURNTABLE_TYPE = "RT-3"
 """Type of the unit that is aligned on a turntable."""
 AROUND_SERVICE = timedelta(days=4)
-"""From a session as found to the service, and from there to the session as left."""
+"""Time from a session as found to the service, and from there to the session as left."""
 NOTES = "Simulated session of the demonstration fleet."
-"""In every file, so that none passes for a measurement."""
+"""Note in every file, so that none passes for a measurement."""
 
 
 @dataclass(frozen=True)

@@ -158,7 +158,7 @@ def _spec(name: str, title: str, *, wider: bool) -> Json:
 
 
 def _marks(base: "alt.Chart", y: "alt.Y", model: str) -> "alt.Chart":
-    """Before as empty marks, after as full ones; direct round, flipped pointed."""
+    """Marks of one model: before empty, after full; direct round, flipped pointed."""
     first = model == MODELS[0]
     colour = "var(--second)" if first else "var(--accent)"
     empty, full = {"filled": False, "strokeWidth": 1.4}, {"filled": True, "stroke": "var(--card)", "strokeWidth": 0.5}

@@ -90,7 +90,7 @@ def _kinds(gain: Gain, calibration: Calibration) -> tuple[str, ...]:
 
 
 def _at(started_at: str | None) -> datetime | None:
-    """When a session began; None where its file does not say."""
+    """The start of a session; None where its file does not state it."""
     return None if started_at is None else moment(started_at)
 
 

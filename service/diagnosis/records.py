@@ -48,7 +48,7 @@ class StoredDiagnosis:
 
     session: str
     model_revision: int
-    """In force when it was made."""
+    """Revision of the model in force when it was made."""
     state: DiagnosisState
     summary: str
     found: Diagnosed | None
@@ -73,6 +73,6 @@ class DiagnosisReport:
     diagnosis: StoredDiagnosis | None
     """None while it is being made."""
     calibration: Calibration
-    """In force."""
+    """Calibration in force."""
     revisions: tuple[ModelRevision, ...]
     """Revisions that concern the session, oldest first."""

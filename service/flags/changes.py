@@ -95,11 +95,11 @@ POSSIBLE = {
     FlagState.ACKNOWLEDGED: (FlagState.RAISED,),
     FlagState.RESOLVED: (FlagState.RAISED, FlagState.ACKNOWLEDGED),
 }
-"""From which states a flag can be brought into which."""
+"""States from which a flag can be brought into a state."""
 
 
 def acknowledge_flag(storage: Storage, id: int, who: str, why: str, now: datetime) -> Flag:
-    """Somebody has seen the flag and looks after it; ConflictError where that was said before."""
+    """Marks a flag as seen and looked after; ConflictError where it already is."""
     return _bring(storage, id, FlagState.ACKNOWLEDGED, who=who, why=why, now=now)
 
 

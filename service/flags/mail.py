@@ -19,7 +19,7 @@ class MailServer:
     """Server that accepts e-mail, and its sender."""
 
     host: str = ""
-    """Empty where none is sent."""
+    """Name of the server; empty where no e-mail is sent."""
     port: int = 25
     sender: str = ""
     security: Literal["none", "starttls", "tls"] = "starttls"

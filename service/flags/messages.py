@@ -35,7 +35,7 @@ MOST_AT_ONCE = 16
 FIRST_PAUSE, LONGEST_PAUSE = timedelta(seconds=10), timedelta(hours=1)
 """A restart of the receiver is waited for, and at most an hour after it is back everything has been sent."""
 MOST_ATTEMPTS = 30
-"""Over about 21 hours."""
+"""Most attempts, over about 21 hours."""
 LOOK_EVERY = 1.0
 """Seconds between two looks into the outbox."""
 LONGEST_WAIT = 60.0

@@ -195,7 +195,7 @@ def assign(
 def acknowledge_chosen(
     flag: Chosen, by: By, why: Why, storage: StorageOf, now: Now, *, to: To = "", view: Asking
 ) -> RedirectResponse:
-    """Somebody looks after several; where the form names whom, they are given to them."""
+    """Acknowledges several flags; assigns them where the form names a person."""
     if to.strip():
         assign_flags(storage, flag, Assignment(to, by), now)
     bring_flags(storage, flag, FlagState.ACKNOWLEDGED, by, why, now)
@@ -211,7 +211,7 @@ def resolve_chosen(flag: Chosen, by: By, why: Why, storage: StorageOf, now: Now,
 
 @router.post("/{id}/acknowledge")
 def acknowledge(id: Number, by: By, why: Why, storage: StorageOf, now: Now) -> RedirectResponse:
-    """Somebody looks after the flag."""
+    """Acknowledges the flag."""
     return _back(acknowledge_flag(storage, id, by, why, now))
 
 

@@ -54,7 +54,7 @@ class NoticeKind(StrEnum):
     """A later session no longer shows it: somebody may resolve the flag."""
     ACKNOWLEDGED = "flag.acknowledged"
     ASSIGNED = "flag.assigned"
-    """Somebody is to look after it, or nobody any more."""
+    """The flag has another assignee, or none any more."""
     RESOLVED = "flag.resolved"
     VERDICT = "verdict.changed"
 
@@ -104,9 +104,9 @@ class Notice:
     kind: NoticeKind
     """Kind of event."""
     at: datetime
-    """When, UTC."""
+    """Time of the event, UTC."""
     who: str
-    """Through whom; `imu-health` for the service itself."""
+    """Person who did it; `imu-health` for the service itself."""
     text: str
     """Observation, or reason for the action."""
     session: str | None
@@ -141,9 +141,9 @@ class Flag:
     session: str | None
     """The latest session that showed it."""
     raised_at: datetime
-    """When it was first raised, UTC."""
+    """Time at which it was first raised, UTC."""
     changed_at: datetime
-    """When it last changed, UTC."""
+    """Time of the last change, UTC."""
     assignee: str = ""
     """Person assigned to it; empty where nobody in particular is."""
     scope: Scope = Scope.UNIT
@@ -172,7 +172,7 @@ class Webhook:
     who: str
     """Person who registered it."""
     created_at: datetime
-    """When, UTC."""
+    """Time of registration, UTC."""
 
 
 class DeliveryState(StrEnum):
@@ -198,7 +198,7 @@ class Delivery:
     attempts: int
     """Number of attempts."""
     next_at: datetime
-    """When it is sent next, UTC; of one that has ended, when it ended."""
+    """Time of the next attempt, UTC; for an ended delivery, its end."""
     outcome: str
     """Result of the latest attempt."""
 

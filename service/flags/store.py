@@ -85,9 +85,9 @@ class FlagQuery(ListQuery):
     """Part of the unit's serial number, or of the name of the type or the stand, small and capital letters alike."""
     unresolved: bool = False
     unit_type: str | None = None
-    """About a type as a whole."""
+    """Name of the type that the flags are about as a whole."""
     stand: str | None = None
-    """About a stand, whether units, single sessions or all of them together tell of it."""
+    """Name of the stand that the flags are about, whether units, single sessions or all of them together tell of it."""
     assignee: Assignee | None = None
     """Assignee, by the account or, where the flag names none, by the name; the one without a name stands for unassigned
     flags.
@@ -95,7 +95,7 @@ class FlagQuery(ListQuery):
 
 
 IS_OF_UNIT = FlagRow.scope == Scope.UNIT
-"""About the unit itself, not about its type or a stand."""
+"""Condition of flags about the unit itself, not about its type or a stand."""
 IS_OF_RETIRED = exists().where(UnitRow.id == FlagRow.unit_id, UnitRow.retired_at.is_not(None))
 IS_RESOLVED = case((FlagRow.state == FlagState.RESOLVED, 1), else_=0)
 """A number that orders open flags before those that are resolved."""

@@ -49,7 +49,7 @@ class UnitSummary:
     last_session: str | None
     """Id of the latest session."""
     last_at: datetime | None
-    """When it was measured, UTC."""
+    """Start of the latest session, UTC."""
     verdict: Verdict | None
     """Verdict of the latest session."""
     is_reference: bool
@@ -69,7 +69,7 @@ class UnitSummary:
     flags: int = 0
     """Number of open flags."""
     due: datetime | None = None
-    """When its next calibration is due, UTC."""
+    """Due date of its next calibration, UTC."""
     due_reason: Hidden[str] = ""
     """Reason for the due date, in one sentence."""
     lot: str | None = None
@@ -77,15 +77,15 @@ class UnitSummary:
     reservations: Hidden[Reservations] = ()
     """Reservations of the verdict."""
     customer: Hidden[Customer] = NO_CUSTOMER
-    """For whom it is calibrated."""
+    """Customer for whom it is calibrated."""
     owner: str = ""
-    """To whom it belongs, as the register says."""
+    """Owner by the register."""
     location: str = ""
     """Location by the register."""
     custodian: str = ""
     """Custodian by the register."""
     retired_at: datetime | None = None
-    """Since when it is retired, UTC; null while it is in use."""
+    """Time of retirement, UTC; null while it is in use."""
     is_undated: Hidden[bool] = False
     """Whether ``due`` and its outlook are still to be worked out with its latest records."""
     deviation: Hidden[float | None] = None

@@ -60,7 +60,7 @@ class FleetQuery(ListQuery):
     location: str | None = None
     custodian: str | None = None
     uncalibrated: bool = False
-    """Only registered units of which no session counts yet."""
+    """Only registered units without a session that counts."""
     retired: bool | None = False
     """Whether the unit is retired; None where either will do."""
     unfit: bool = False

@@ -140,7 +140,7 @@ class Fleet(Queries):
         return page.forward(_summary(row) for row in self._session.execute(query))
 
     def dates(self, wanted: FleetQuery) -> tuple[datetime | None, ...]:
-        """When each of the wanted units is due, however many; None where that is not known."""
+        """The due dates of all wanted units; None where a date is not known."""
         listed = _listed(wanted.retired)
         page = UNITS.page(self._session, listed, replace(wanted, limit=EVERY))
         dates = page.cut(listed.with_only_columns(OutlookRow.due, maintain_column_froms=True))
@@ -397,5 +397,5 @@ def _reservations(row: DiagnosisRow | None) -> Reservations:
 
 
 def _diagnosis(row: DiagnosisRow | None) -> str:
-    """In one line, where something is wrong."""
+    """The diagnosis in one line, where something is wrong; empty otherwise."""
     return "" if row is None or not DiagnosisState(row.state).is_wrong else row.summary

@@ -95,7 +95,7 @@ class Announcements(Queries):
     """Stands that shifted, sessions that wait for an engineer, what sessions show together."""
 
     def all(self, questioned: int, found: int) -> Announced:
-        """At most so many of the second and of the third."""
+        """All announcements, with at most so many questioned sessions and findings of groups."""
         listed = lists("stands", "questioned", "found")
         shifts, waiting, together = _shifts(), _questioned(questioned), _found(found)
         query = (

@@ -49,7 +49,7 @@ BY_ANGLE = "β"
 TITLES = {BY_ANGLE: "β, °", "(T − T̄)": "T − T̄, K", "(t − t̄)": "t − t̄, h", "a": "input, of the applied vector"}
 """Title of the axis that a picture is drawn over."""
 FACTORS = {BY_ANGLE: degrees(1.0), "(t − t̄)": 1 / 3600}
-"""From SI to what the axis shows."""
+"""Factors from SI to the unit of the axis."""
 
 
 @dataclass(frozen=True)

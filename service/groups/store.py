@@ -248,7 +248,7 @@ class Statistics(Queries):
         self._put(session, why=why)
 
     def release(self, session: str) -> None:
-        """Nothing was tried: whoever wants them next tries."""
+        """Releases the statistics of a session: nothing was tried, and the next who wants them tries."""
         self._session.execute(delete(SessionStatisticsRow).where(SessionStatisticsRow.session_id == session))
         self._session.expire_all()
 

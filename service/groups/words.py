@@ -218,7 +218,7 @@ FORMS = {"same": "in all of these sessions", "varying": "on average in these ses
 MOMENT = re.compile(r"\d{4}-\d\d-\d\dT[\d:.]+(?:Z|[+-]\d\d:\d\d)?")
 """A moment as files state it, ISO 8601."""
 BLIND = "–"
-"""In place of a size that no number of such sessions shows, and of a date that is not known."""
+"""Text in place of a size that no number of such sessions shows, and of a date that is not known."""
 
 
 RULE_OUT = "These sessions do not rule out the other causes. Before you act on one, make the measurement that does."
@@ -256,7 +256,7 @@ class LastingEffect:
     amplitudes: tuple[str, ...]
     since: str
     spread: str
-    """From session to session, one standard deviation; empty of one that is always the same."""
+    """Scatter from session to session, one standard deviation; empty for an effect that is always the same."""
     evidence: str
     advice: str
     choices: tuple[GroupChoice, ...]
@@ -361,7 +361,7 @@ def with_days(note: str) -> str:
 
 
 def since_in_words(form: str, since: str | None) -> str:
-    """In which of the sessions an effect is."""
+    """The sessions that have an effect, in words."""
     return FORMS.get(form) or (
         "since one of these sessions" if since is None else say("since {date}", date=day_in_words(since))
     )

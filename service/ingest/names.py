@@ -10,7 +10,7 @@ INVISIBLE = ("Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp")
 """Categories of invisible characters: control, format (direction, zero width), surrogate, private, unassigned, line
 ends."""
 DOT_SEGMENTS = ("", ".", "..")
-"""Between slashes: what browsers remove from an address."""
+"""Parts between slashes that browsers remove from an address."""
 
 
 def plain_name(text: str) -> str:

@@ -128,11 +128,11 @@ class UploadHooks:
     """Hooks of one upload. An exception raised by a hook stops it, and nothing is stored."""
 
     keeping: Callable[[], None] = _no_op
-    """Before its bytes are stored, when its readings are valid."""
+    """Called before its bytes are stored, when its readings are valid."""
     stored: Callable[[Store, Receipt], None] = _no_op
-    """Within the transaction that stores it."""
+    """Called within the transaction that stores it."""
     refused: Callable[[Store, int], None] = _no_op
-    """Within the transaction that records the refusal, with its number."""
+    """Called within the transaction that records the refusal, with its number."""
 
 
 NO_HOOKS = UploadHooks()

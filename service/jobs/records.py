@@ -38,7 +38,7 @@ class JobState(StrEnum):
 
 
 OPEN = (JobState.WAITING, JobState.RUNNING)
-"""Not ended or cancelled."""
+"""States of a job that is neither ended nor cancelled."""
 
 
 KILOBYTE = 1000
@@ -124,11 +124,11 @@ class Job:
     state: JobState
     """Progress of the job."""
     asked_at: datetime
-    """When it was asked for, UTC."""
+    """Time of the request, UTC."""
     begun_at: datetime | None
-    """When it was begun, UTC; none while it waits."""
+    """Start, UTC; none while it waits."""
     ended_at: datetime | None
-    """When its last piece was begun, UTC; none while it is not ended."""
+    """Start of its last piece, UTC; none while it is not ended."""
     cancelled_by: str
     """Person who cancelled it; empty where nobody did."""
     done: int

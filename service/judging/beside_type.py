@@ -30,7 +30,7 @@ COARSE = 100.0
 RAYLEIGH = 1.1774
 """Median of the length of a two-vector, in sigmas of a component."""
 NEAR = float(np.cos(np.radians(10.0)))
-"""Within it an axis is that of a sensor."""
+"""Cosine of the angle within which an axis is taken for that of a sensor."""
 ANOTHER = "the readings contain an offset, or the connected sensor is not the one in the file"
 Tolerances = Mapping[tuple[str, str], float]
 """Tolerances by kind of sensor and parameter, SI or relative."""
@@ -84,7 +84,7 @@ def beside_type(sensors: Sequence[SensorCalibration], peers: Type) -> Iterator[D
 
 
 def _distance(sensor: SensorCalibration, parameter: str, peers: Type) -> float | None:
-    """From the type's median, SI, of a value that is too far from it."""
+    """The distance of a value from the type's median, SI, where it is too far; None otherwise."""
     known, seen = peers.values.get((sensor.name, parameter), ()), getattr(sensor, parameter)
     if not known or seen.value is None or (sensor.kind, parameter) not in MEASURES:
         return None

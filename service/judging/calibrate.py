@@ -76,7 +76,7 @@ def rests_on_model(programme: str) -> bool:
 
 
 def _under(model: Model, session: CalibrationSession) -> Calibration:
-    """Under a model; a session that a cause of it does not show is calibrated without that cause."""
+    """The calibration under a model; where a session does not show one of its causes, without that cause."""
     if (model.causes or model.fixed) and session.programme in CALIBRATIONS:
         return calibrate_with(session, model.fixed, model.causes)
     return calibrate_baseline(session)

@@ -69,7 +69,7 @@ class Yardstick:
 
     calibration: Calibration
     residuals: Residuals
-    """Under the baseline."""
+    """Residuals under the baseline."""
     tolerances: Mapping[tuple[str, str], float]
     """Tolerances by kind of sensor and parameter."""
 

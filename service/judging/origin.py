@@ -254,7 +254,7 @@ FIRST_CLOCK = datetime(1980, 1, 7, tzinfo=UTC)
 MILLENNIUM, RUNNING = datetime(2000, 1, 1, tzinfo=UTC), timedelta(days=31)
 """Start of the clocks of loggers that lost their time, and the time that such a clock runs before somebody sets it."""
 LONGEST_LIFE = timedelta(days=3653)
-"""Before a unit's first session: of older ones the records are missing, or the date is wrong."""
+"""Longest time before a unit's first session: of older ones the records are missing, or the date is wrong."""
 LOST = "the clock was wrong; write the date of the measurement into the file"
 
 

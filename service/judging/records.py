@@ -25,7 +25,7 @@ from service.stands.records import StandCertificate
 Key = tuple[str, str]
 """Matter and place of a flag."""
 Moment = tuple[datetime, str]
-"""When a session was measured, and its id: the order of records."""
+"""Start of a session and its id: the order of records."""
 
 
 @dataclass(frozen=True)
@@ -61,9 +61,9 @@ class UnitRecords:
     """Basis of everything derived of a unit."""
 
     counted: tuple[Counted, ...]
-    """In order of time."""
+    """Accepted sessions in order of time."""
     breaks: tuple[datetime, ...]
-    """When the epochs begin, the first one apart, in order."""
+    """Beginnings of the epochs, the first one apart, in order."""
     choices: tuple[str, ...]
     """Sessions that engineers chose for references, the oldest choice first."""
     references: frozenset[str]
@@ -185,13 +185,13 @@ class Usable:
     """Whether a unit may be used now, and why."""
 
     usable: bool
-    """In doubt it is false."""
+    """Whether the unit may be used; false in doubt."""
     answer: Use
     """`yes`, `with-reservation`, `no`, or `not-known-yet` while its verdict or dates are being worked out."""
     use: str
     """The answer in words, with the action."""
     why: str
-    """In one sentence."""
+    """Reason in one sentence."""
     action: str
     """Action that is due, as a clause; empty where there is none."""
     reasons: tuple[str, ...]
@@ -207,7 +207,7 @@ class Usable:
     correction: str | None
     """Id of the session whose correction firmware applies; null where no session calibrates every sensor."""
     as_of: datetime
-    """When it was asked, UTC."""
+    """Time of the question, UTC."""
     due_reason: Hidden[str] = ""
     """The rule that set the date, or why there is none."""
 

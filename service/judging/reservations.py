@@ -154,10 +154,11 @@ class Otherwise:
 def verdicts_under_alternatives(
     session: CalibrationSession, findings: tuple[Finding, ...], basis: Basis
 ) -> Iterator[Otherwise]:
-    """Under each of the likeliest alternatives of the strongest finding, in its place beside the other names.
+    """The verdicts under each of the likeliest alternatives of the strongest finding, in its place beside the other
+    names.
 
-    None where the record is wrong: the session is to be uploaded again. None of an alignment: it takes off what is
-    looked for in it. None of what only several sessions show together: this one cannot fit it.
+    There are none where the record is wrong: the session is to be uploaded again; none for an alignment: it removes the
+    effects of such causes; and none for a finding that only several sessions show together: this one cannot fit it.
     """
     findings = tuple(f for f in findings if f.over_sessions is None)
     if (
@@ -222,7 +223,7 @@ class Doubted:
     """Findings about a session, beside its verdict."""
 
     verdict: Verdict | None
-    """In force; None of a reference, or where nothing was judged."""
+    """Verdict in force; None for a reference, or where nothing was judged."""
     findings: tuple[Finding, ...]
     structures: tuple[Structure, ...]
     noise: tuple[NoiseScale, ...]
@@ -231,7 +232,7 @@ class Doubted:
     """Verdicts under the other models that are left standing."""
     known: Known = frozenset()
     temperatures: Covered | None = None
-    """Beside those of its unit; None where nothing says them, or nothing was judged."""
+    """Temperatures besides those of its unit; None where nothing states them, or nothing was judged."""
     worth: tuple[Size, ...] | None = None
     """Effect of the step in temperature on every parameter; None where that is not known."""
 
@@ -340,7 +341,7 @@ def _of_errors(session: Doubted) -> Iterator[Reservation]:
 
 
 def _of_readings(session: Doubted) -> Iterable[Reservation]:
-    """Nothing is left over to look for causes in."""
+    """The reservation of a session without readings left over to look for causes in."""
     exact = session.yardstick.calibration.fit.is_exact and not session.findings
     return (Reservation(Doubt.NOT_CHECKED, TOO_FEW, ADD),) if exact else ()
 

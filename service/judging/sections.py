@@ -8,12 +8,12 @@ from service.judging.parity_words import parts_in_words
 from service.kit.measures import in_words
 
 PARAMETERS = ("bias", "scale", "axis")
-"""In the order of the table."""
+"""Parameters in the order of the table."""
 
 
 @dataclass(frozen=True)
 class SightRow:
-    """From what size a change of one sensor would have been seen."""
+    """Sizes from which a change of one sensor would have been detected."""
 
     name: str
     share: str

@@ -108,7 +108,7 @@ class Derivations(Queries):
         return unit_records(self._session, unit)
 
     def computed_at(self, ids: Collection[str]) -> dict[str, datetime]:
-        """When the calibrations in force of some sessions were computed."""
+        """The times at which the calibrations in force of some sessions were computed."""
         if not ids:
             return {}
         in_force = (SessionRow.id == CalibrationRow.session_id) & (SessionRow.revision == CalibrationRow.revision)
@@ -149,7 +149,7 @@ class Derivations(Queries):
         return self._session.scalar(query.where(*conditions)) or 0
 
     def put_weighed(self, ids: Collection[str]) -> None:
-        """Nothing more is to be done about the verdicts of sessions."""
+        """Marks the verdicts of sessions as weighed beside their diagnoses."""
         conditions = SessionRow.id.in_(tuple(ids)), SessionRow.basis.startswith(UNWEIGHED)
         weighed = func.substr(SessionRow.basis, len(UNWEIGHED) + 1)
         self._session.execute(update(SessionRow).where(*conditions).values(basis=weighed))

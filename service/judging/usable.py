@@ -39,7 +39,7 @@ class Objection:
     """One thing that speaks against the use, or that must be known."""
 
     text: str
-    """In a sentence."""
+    """Objection in a sentence."""
     action: str = ""
     """Action to take, as a clause."""
     is_pending: bool = False

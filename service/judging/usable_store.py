@@ -118,7 +118,7 @@ def _correction(serviced: ScalarSelect[datetime]) -> ScalarSelect[str]:
 
 
 def _questioned() -> ScalarSelect[datetime]:
-    """When the latest session after the one that counts was measured that waits for an engineer."""
+    """The start of the latest session that waits for an engineer, of those after the one that counts."""
     later = or_(SessionRow.started_at.is_(None), Other.started_at > SessionRow.started_at)
     conditions = (Other.unit_id == UnitRow.id, Other.state == RecordState.QUESTIONED, later)
     return select(func.max(Other.started_at)).where(*conditions).correlate(UnitRow, SessionRow).scalar_subquery()

@@ -23,12 +23,12 @@ class Bell:
             self._condition.notify_all()
 
     def wait(self, rung: int, seconds: float) -> None:
-        """Until it rang once more, or the time is over."""
+        """Waits until it rang once more, or the time is over."""
         with self._condition:
             self._condition.wait_for(lambda: self._rung != rung, seconds)
 
     def hurry(self, session: str) -> None:
-        """Somebody waits for the diagnosis of a session: it comes before the others."""
+        """Puts a session before the others because somebody waits for its diagnosis."""
         if session not in self._urgent:
             self._urgent.append(session)
             self.ring()

@@ -7,7 +7,7 @@ from estimator.message import say, without_stop
 from service.kit.answer import answer
 
 AT_FAULT = "the program failed at it: see the log"
-"""In place of Python's words."""
+"""Reason in place of Python's words."""
 
 
 def too_long(seconds: float) -> str:
@@ -33,7 +33,7 @@ class FailedKind(StrEnum):
     JOB = "job"
     """Long work that somebody asked for."""
     MESSAGE = "message"
-    """To another program."""
+    """Message to another program."""
 
 
 @answer

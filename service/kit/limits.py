@@ -66,13 +66,13 @@ class Limits:
 
 
 SMALL = Limits()
-"""For 2 GB of memory: two readers, the service and a diagnosis fit."""
+"""Limits for 2 GB of memory: two readers, the service and a diagnosis fit."""
 TIMES = 4
 """Ratio of the limits of a large machine to those of a small one."""
 SCALED = ("rows", "cells", "log_cells", "whole", "log", "attached", "unpacked", "seconds", "memory", "work")
 """Limits that grow with the machine: the size of one file, and the time and memory that it takes."""
 LARGE = replace(SMALL, **{name: TIMES * getattr(SMALL, name) for name in SCALED})
-"""For 8 GB of memory."""
+"""Limits for 8 GB of memory."""
 
 
 class _InForce:

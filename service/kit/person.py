@@ -44,7 +44,7 @@ class Account:
     is_active: bool
     """Whether the person may sign in."""
     created_at: datetime
-    """When, UTC."""
+    """Time of creation, UTC."""
     has_password: bool
     """Whether a password was chosen already."""
 
@@ -61,15 +61,15 @@ class Token:
     label: str
     """Purpose of the token."""
     role: Role
-    """At most this, and never more than its account may."""
+    """Highest role of the token, which never has more than its account may."""
     created_at: datetime
     """Time of creation, UTC."""
     expires_at: datetime
     """Time until which it is valid, UTC."""
     revoked_at: datetime | None
-    """When it was revoked, UTC."""
+    """Time of revocation, UTC."""
     last_used_at: datetime | None
-    """To the hour, UTC."""
+    """Hour of the last use, UTC."""
 
 
 @dataclass(frozen=True)
@@ -112,4 +112,4 @@ STRANGER = Person("", "", None)
 LOOKING = Person("", "", Role.VIEWER)
 """Somebody who has not signed in where there is nothing but a demonstration to see."""
 EVERYBODY = Person("", "", Role.ADMIN)
-"""Everybody where nobody needs to sign in."""
+"""Person in place of everybody where nobody needs to sign in."""

@@ -112,7 +112,7 @@ _NUMBER = r"\d+(?:,\d{3})*(?:\.\d+)?"
 VALUE = re.compile(rf"([+−±]?{_NUMBER}(?:(?:\s±\s|–|…){_NUMBER})?)(\s?)([^\s\d.,:;]*)(\s*)")
 """A text that is one number, or a range, and at most one measure."""
 NARROW = "\u202f"
-"""Between thousands."""
+"""Space between thousands."""
 
 
 def value_in(text: str, say: Callable[[str], str]) -> str:

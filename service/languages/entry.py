@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from estimator.message import PLACE
 
 LETTERS = re.compile(r"[A-Za-z]{2}")
-"""In every message."""
+"""Pattern that every message contains."""
 COUNT = "n"
 """The placeholder whose number decides between singular and plural."""
 TAG = re.compile(r"</?[a-z]\w*>")

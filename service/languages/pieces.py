@@ -16,7 +16,7 @@ TOO_COMMON = frozenset(("page", "loop", "if", "else", "or", "and", "not", "lengt
 
 @dataclass
 class Piece:
-    """Under construction: the text of one and of many, what stands in the places, and what is counted."""
+    """Message under construction: the text of one and of many, the expressions in its places, and the counted one."""
 
     one: str = ""
     many: str = ""

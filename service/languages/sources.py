@@ -25,7 +25,7 @@ HEADING_MODULES = re.compile(
 SETTINGS = "service/settings.py"
 """Module of the settings; a page shows their descriptions."""
 COMMANDS = ("service/client/connection.py", "service/commands/*.py")
-"""Only what they say in calls is for people: their help stays English."""
+"""Modules in which only the texts in calls are for people: their help stays English."""
 PACKAGES = ("service", "estimator")
 IGNORED = (
     "service/app.py",

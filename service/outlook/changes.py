@@ -22,7 +22,7 @@ from service.types.store import UnitTypes
 from service.units.store import Services, Units
 
 END_OF_TIME = datetime(9999, 1, 1, tzinfo=UTC)
-"""After every break."""
+"""A time after every break."""
 RULE = b"6"
 """Version of what an outlook says of a history: those made by an earlier one are made again."""
 AT_HAND = 32

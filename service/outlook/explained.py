@@ -41,7 +41,7 @@ class _ExplainedSession:
     session: str
     found: Diagnosed
     calibration: Calibration
-    """In force."""
+    """Calibration in force."""
     reference: Calibration
     """Reference from which its changes are counted."""
 

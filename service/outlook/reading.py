@@ -49,7 +49,7 @@ def compared(outlook: UnitOutlook, populations: Iterable[Population], now: datet
 
 
 def _placed(trend: ParameterTrend, among: Population | None) -> ParameterTrend:
-    """In tolerances a year, as rates of a type are compared."""
+    """The trend with its distance among the rates of the type, compared in tolerances a year."""
     if among is None:
         return trend
     z = among.z(trend.rate_per_year / trend.tolerance, trend.rate_sigma / trend.tolerance)

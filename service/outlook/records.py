@@ -1,4 +1,4 @@
-"""When a unit must come back and why: drift, forecast and risk as frozen records. SI inside."""
+"""Next calibrations of units and their reasons: drift, forecast and risk as frozen records. SI inside."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -30,7 +30,7 @@ class Rate:
 
 @dataclass(frozen=True)
 class DueDate:
-    """When a unit must come back, and why then."""
+    """Due date of a unit's next calibration, and the reason."""
 
     unit: str
     at: datetime
@@ -53,7 +53,7 @@ class Action(StrEnum):
     """Next action for a unit."""
 
     CALIBRATE = "calibrate"
-    """At its due date."""
+    """The unit is to be calibrated at its due date."""
     NOW = "act-now"
     """The unit was found out of tolerance: adjust, repair or withdraw it; no date makes that better."""
     REPEAT = "repeat"
@@ -120,7 +120,7 @@ class FoundChange:
     sigma: float
     """Standard uncertainty of it."""
     p_value: float
-    """Over all kinds, sizes and times of change that were tried on the parameter."""
+    """p-value over all kinds, sizes and times of change that were tried on the parameter."""
 
 
 @answer
@@ -174,7 +174,7 @@ class ParameterTrend:
     since: Hidden[datetime | None] = None
     """Date of the first session of the trend: the reference, or the first after a sudden change."""
     fan: Hidden[tuple[FanPoint, ...]] = ()
-    """From the last session on, a year ahead."""
+    """Forecast from the last session on, a year ahead."""
     changes: tuple[FoundChange, ...] = ()
     """Changes that chance does not explain, most evident first."""
     temperature: TemperatureCoefficient | None = None
@@ -195,7 +195,7 @@ class RiskPoint:
 @answer
 @dataclass(frozen=True)
 class UnitOutlook:
-    """When a unit must be calibrated next, why, and what waiting costs."""
+    """Next calibration of a unit, its reason, and the risk of waiting."""
 
     serial: str
     """Serial number."""
@@ -252,7 +252,7 @@ class UnitOutlook:
 @answer
 @dataclass(frozen=True)
 class OutlookAnswer(UnitOutlook):
-    """When a unit must be calibrated next, why, and what waiting costs."""
+    """Next calibration of a unit, its reason, and the risk of waiting."""
 
     until: RiskPoint | None = None
     """The risk of waiting until the date that was asked for."""

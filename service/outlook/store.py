@@ -131,7 +131,7 @@ OWN = (
 
 
 class Outlooks(Queries):
-    """When units must come back."""
+    """Outlooks of units and the histories behind them."""
 
     def changes(self, unit: int, since: datetime | None) -> tuple[ChangeRow, ...]:
         """Every judged change of a unit since a time, oldest first; not those of a recording in service or a check."""
@@ -253,7 +253,7 @@ class Outlooks(Queries):
         return tuple(self._session.scalars(_overdue(now).with_only_columns(UnitRow.serial).order_by(UnitRow.serial)))
 
     def due(self, most: int, since: datetime | None = None) -> tuple[DueDate, ...]:
-        """When units must come back and why, the first to come first; those that are overdue before all."""
+        """The due dates of units with their reasons, the first to come first; overdue ones before all."""
         query = select(UnitRow.serial, OutlookRow.due, OutlookRow.reason)
         query = query.join(UnitRow, UnitRow.id == OutlookRow.unit_id).where(
             OutlookRow.due.is_not(None), UnitRow.retired_at.is_(None)

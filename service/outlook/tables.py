@@ -20,7 +20,7 @@ from service.storage.tables import Base
 
 
 class OutlookRow(Base):
-    """When a unit must come back and why, rewritten when its history changes: drift, forecast, risk."""
+    """Next calibration of a unit and its reason, rewritten when its history changes: drift, forecast, risk."""
 
     __tablename__ = "outlooks"
     unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"), primary_key=True, autoincrement=False)

@@ -200,7 +200,7 @@ def was_due(due: datetime, reason: str) -> str:
 FAR = 5.0
 """Standard uncertainties from which on a distance from the reference is beyond doubt."""
 WAITS = (timedelta(days=91), timedelta(days=182), timedelta(days=365))
-"""From today on: a quarter, half a year and a year, as calibrations are put off."""
+"""Times of waiting from today: a quarter, half a year and a year, as calibrations are put off."""
 
 
 @dataclass(frozen=True)
@@ -257,7 +257,7 @@ def _wandered(trend: ParameterTrend) -> str:
 
 
 def _waits(outlook: UnitOutlook, now: datetime) -> tuple[Wait, ...]:
-    """From today, and at the due date where that is still to come."""
+    """The risks of waiting, from today on, and at the due date where that is still to come."""
     if not outlook.risk:
         return ()
     days = [now, *(now + later for later in WAITS)]

@@ -52,7 +52,7 @@ class SessionReport:
     states: tuple[StateChange, ...] = ()
     """Changes of state since the session was received, oldest first; empty where it was accepted and remained so."""
     diagnosis: DiagnosisSummary | None = None
-    """In one line; None while it is still to be made."""
+    """Diagnosis in one line; None while it is still to be made."""
     failed: str = ""
     """Reason why the last attempt at the diagnosis failed; empty where none did."""
 
@@ -140,7 +140,7 @@ class CertifiedSession(StatedSession):
 
     unit_type: UnitType
     pair: FoundAndLeft | None
-    """For a session as left, the pair with the session as found; None for any other."""
+    """Pair of a session as left with the session as found; None for any other."""
     diagnosis: StoredDiagnosis
     revisions: tuple[ModelRevision, ...]
     """The accepted causes in its calibration."""

@@ -32,7 +32,7 @@ class Label:
     """
     is_usable: bool
     due: str
-    """Empty where it was not wanted, or where something else must be done first."""
+    """Due date; empty where it was not wanted, or where something else must be done first."""
     why: str
     """The rule that set the date, what to do, or what speaks against the use; empty where the label states none."""
     stated: str

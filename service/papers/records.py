@@ -106,7 +106,7 @@ class Signed:
 
     signatures: tuple[Signature, ...] = ()
     sealed_by: str = ""
-    """Empty without a seal."""
+    """Owner of the seal; empty without a seal."""
 
 
 UNSIGNED = Signed()
@@ -137,7 +137,7 @@ class RestingCertificate:
     session: str
     """Id of the session."""
     started_at: datetime
-    """When it was measured, UTC."""
+    """Start of the measurement, UTC."""
     issued_at: datetime
     """UTC."""
     is_measured_there: bool

@@ -50,7 +50,7 @@ class StatusPaper:
     why: str
     condition: Condition
     next: str
-    """When its next calibration is due; empty where something else must be done first."""
+    """Due date of its next calibration; empty where something else must be done first."""
     facts: tuple[Fact, ...]
     reservations: tuple[str, ...]
     more: int

@@ -60,7 +60,7 @@ def _plain(value: object) -> str:
 
 router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
 AUDIT_LINES = 20
-"""On a page."""
+"""Lines on a page."""
 Login = Annotated[str, Path(max_length=60, pattern=NO_NUL)]
 Written = Annotated[str, Form(max_length=200, pattern=NO_NUL)]
 

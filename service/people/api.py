@@ -49,7 +49,7 @@ class AccountList(BaseModel):
 
 
 class NewAccount(Body, json_schema_extra={"example": {"login": "k.ito", "name": "K. Ito", "role": "crew"}}):
-    """Somebody who is to sign in."""
+    """A new account."""
 
     login: NonBlankName = Field(
         description="Letters a to z, digits and . _ @ -; at most 60. Capitals are made small.",
@@ -115,7 +115,7 @@ def read_me(person: PersonOf) -> MeSchema:
 
 @router.get("/accounts", responses=errors())
 def list_accounts(store: Reading) -> AccountList:
-    """Everybody who may sign in, or once might."""
+    """The accounts of everybody who may sign in, or once might."""
     return AccountList(accounts=Accounts(store).every())
 
 
@@ -164,8 +164,9 @@ def create_token(new: NewToken, storage: StorageOf, now: Now, person: PersonOf) 
 
 @router.delete("/tokens/{id}", status_code=204, responses=errors(403, 404, 422))
 def delete_token(id: Number, storage: StorageOf, store: Reading, now: Now, person: PersonOf) -> None:
-    """Nobody gets in with the token any more; it stays listed. Others' tokens need an administrator who is signed in: a
-    token revokes only itself."""
+    """Revoke a token; it stays listed. Others' tokens need an administrator who is signed in: a token revokes only
+    itself.
+    """
     require_may_revoke(person, Tokens(store).get(id))
     revoke_token(storage, id, now, who=person.signs(UNNAMED))
 

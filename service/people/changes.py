@@ -194,7 +194,7 @@ def _key(*parts: str) -> str:
 
 
 def _reset(storage: Storage, limits: tuple[_Limit, ...]) -> None:
-    """After a right password: resets own counts, and subtracts this attempt from shared ones."""
+    """Resets own counts after a right password, and subtracts this attempt from shared ones."""
     with storage.database.writing() as store:
         for limit in limits:
             if limit.is_own:
@@ -249,7 +249,7 @@ class LinkForm:
     """The form behind a sign-in link."""
 
     login: str
-    """For the first account only."""
+    """Login, for the first account only."""
     name: str
     password: str
 

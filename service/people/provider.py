@@ -99,7 +99,7 @@ class ProviderSettings:
     issuer: str
     client: str
     secret: str
-    """Empty for a public client."""
+    """Secret of the client; empty for a public client."""
     role_claim: str
     hosts: frozenset[str]
     """Allowed in its metadata."""
@@ -124,7 +124,7 @@ class Joining:
 
 
 def joining_of(settings: Settings) -> Joining:
-    """From the settings."""
+    """The rules of joining in the settings."""
     roles = {value: Role(role) for value, role in settings.oidc_roles}
     return Joining(roles.get(EVERYBODY), bool(settings.oidc_role_claim), roles)
 

@@ -23,7 +23,7 @@ DASHES = [[1, 0], [4, 3], [5, 3]]
 
 
 def plan_charts(plan: Plan, kind: str) -> tuple[ChartSet, ChartSet]:
-    """Over N at the plan's elevation, and over the elevation at the plan's N."""
+    """Charts over N at the plan's elevation, and over the elevation at the plan's N."""
     degrees = np.degrees(plan.over_elevation.at)
     by_number = _parameters(plan, kind, plan.over_positions, plan.over_positions.at.astype(float), plan.positions)
     by_angle = _parameters(plan, kind, plan.over_elevation, degrees, float(np.degrees(plan.elevation)))

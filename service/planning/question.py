@@ -173,7 +173,9 @@ class ReadyQuestion(BaseModel):
     )
 
     def question(self, kind: str, tolerances: Mapping[tuple[str, str], float], usual: float | None) -> Question:
-        """In SI, for a record whose leading sensors are of a kind; ``usual``: usual duration of such sessions, s."""
+        """The question in SI, for a record whose leading sensors are of a kind; ``usual``: usual duration of such
+        sessions, s.
+        """
         overrides = {
             name: getattr(self, name) / MEASURES[kind, name].factor for name in ("bias", "scale") if getattr(self, name)
         }

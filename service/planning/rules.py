@@ -48,7 +48,9 @@ def plan(storage: Storage, question: PlanQuestion) -> tuple[PlanQuestion, Plan]:
 
 @lru_cache(maxsize=64)
 def _of_cone(question: PlanQuestion) -> Plan:
-    """For sensors on a cone: the question alone decides it, and the empty one of the page is everybody's first."""
+    """The plan for sensors on a cone: the question alone decides it, and the empty one of the page is everybody's
+    first.
+    """
     return _planned(question, question.cone(), question.kind)
 
 

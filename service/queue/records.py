@@ -25,7 +25,7 @@ class WorkKind(StrEnum):
     UPLOAD = "upload"
     """A long file that was received completely, by the number of its job."""
     MESSAGE = "message"
-    """To a webhook, by the number of its delivery."""
+    """Message to a webhook, by the number of its delivery."""
 
 
 class WorkState(StrEnum):

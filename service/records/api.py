@@ -1,4 +1,4 @@
-"""Over HTTP: states of records; what happened to a unit: services, notes, and how it was found and left."""
+"""States of records, and events of a unit over HTTP: services, notes, and the unit as found and as left."""
 
 from fastapi import APIRouter, Request
 from pydantic import BaseModel, Field

@@ -67,7 +67,7 @@ OTHERWISE_WRITTEN = ("channels-swapped", "sign-reversed", "runs-swapped", "beta-
 QUESTIONED = "Questioned, not judged: "
 """Heads the reason."""
 NOTHING_KNOWN = Remedies()
-"""Nothing that would put it right."""
+"""Remedies where none is known."""
 
 
 def question(

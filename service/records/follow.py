@@ -35,8 +35,9 @@ from service.units.store import Units
 
 
 def follow(storage: Storage, context: Deriving, serial: str, derived: Derived) -> None:
-    """After a change of a unit's records: verdicts, their reservations, and dates. What fails is kept with why,
-    and costs the change itself nothing."""
+    """Computes verdicts, their reservations, and dates after a change of a unit's records. A failure is kept with its
+    reason, and does not undo the change itself.
+    """
     with ending_here("derivations", serial):
         derive_left(storage, context, serial, derived)
     date(storage, context, serial)
@@ -121,8 +122,9 @@ def _left(store: Store, context: Deriving, serial: str) -> int:
 
 
 def date(storage: Storage, context: Deriving, *serials: str) -> None:
-    """After a change of records, where no background process does it. What fails is kept with why, and costs
-    nobody else anything."""
+    """Computes dates after a change of records, where no background process does it. A failure is kept with its reason,
+    and does not affect anybody else.
+    """
     for serial in () if context.is_dated_later or not context.outlook else serials:
         with ending_here("outlook", serial):
             date_one(storage, serial, context.at)

@@ -51,7 +51,7 @@ class Place:
     reference: Counted | None
     """Reference against which it is judged; itself where it is the reference, None where the epoch has none."""
     since: datetime | None
-    """When its epoch began; None in the unit's first one."""
+    """Beginning of its epoch; None in the unit's first one."""
     is_chosen: bool = False
     """Whether an engineer ever chose it for the reference."""
     learned: tuple[Counted, ...] = ()
@@ -176,10 +176,10 @@ class Judging:
     files: Files
     coverage_factor: float
     at: datetime
-    """When what is stored now is computed."""
+    """Time of computation of the results that are stored now."""
     of_type: TypeThroughTime
     computed: Mapping[str, datetime]
-    """When the calibrations of sessions that are stored were computed."""
+    """Times at which the stored calibrations of sessions were computed, by session."""
 
     def unit_type(self, id: str) -> UnitType:
         """The unit type with the tolerances that held when the calibration of a session was computed."""

@@ -77,7 +77,7 @@ def recalibrate_one(storage: Storage, serial: str, now: datetime, coverage_facto
 
 
 def one_by_one(storage: Storage, clock: Callable[[], datetime], coverage_factor: float) -> Run:
-    """In this process."""
+    """Runs one unit after another in this process."""
     return lambda serials: (recalibrate_one(storage, serial, clock(), coverage_factor) for serial in serials)
 
 

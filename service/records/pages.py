@@ -121,7 +121,7 @@ class ForeseenPage:
 
     service: NewService
     what: str
-    """In words: `Repair of A3`."""
+    """Service in words: `Repair of A3`."""
     preview: ServicePreview
 
 

@@ -122,7 +122,7 @@ def recalibrate(
 class _Source:
     session: StoredSession
     model: Model
-    """In force now."""
+    """Model in force now."""
     values: tuple[ParameterValue, ...]
     """Parameters as they were computed before."""
     recording: Calibration | None
@@ -243,7 +243,9 @@ def recompute_beside(reception: Reception, now: datetime) -> None:
 
 
 def recompute(storage: Storage, task: Task, now: datetime, coverage_factor: float) -> None:
-    """Nothing is overwritten: earlier results stay readable under their revision."""
+    """Computes a unit's sessions again for a task. Nothing is overwritten: earlier results stay readable under their
+    revision.
+    """
 
     def settle(store: Store, done: Recalibrated) -> None:
         outcome = Recomputed(done.sessions, done.recomputed, done.left, done.verdicts, done.furthest)

@@ -47,7 +47,7 @@ class Weighing:
     """Stored facts by which a diagnosis is weighed."""
 
     verdict: Verdict | None
-    """In force; None of a reference, or where nothing was judged."""
+    """Verdict in force; None for a reference, or where nothing was judged."""
     basis: Basis | None
     """None where there is nothing to judge by."""
     tolerances: dict[tuple[str, str], float]
@@ -163,8 +163,9 @@ def weighable(store: Store, session: Counted) -> Weighable:
 
 
 def weighed_again(storage: Storage, session: Counted) -> WeighedAgain:
-    """After another calibration or verdict of a session came into force: its reservations; where its file is lost
-    or can no longer be read, that nobody could look. No transaction is open."""
+    """The reservations of a session after another calibration or verdict of it came into force; where its file is lost
+    or can no longer be read, the reservation that it was not checked. No transaction is open.
+    """
     id = session.id
     with storage.database.reading() as store:
         weighed, stored, made = weighable(store, session), Sessions(store).get(id), Diagnoses(store).get(id)

@@ -97,12 +97,12 @@ def hints(titles: Mapping[str, str]) -> "list[alt.Tooltip]":
 
 
 def x_scale(**options: Any) -> "alt.Scale":
-    """Over the range that x is given."""
+    """A scale over the range that x is given."""
     return alt.Scale(domain=[LEFT, RIGHT], **options)
 
 
 def y_scale(**options: Any) -> "alt.Scale":
-    """Over the range that y is given."""
+    """A scale over the range that y is given."""
     return alt.Scale(domain=[LOW, HIGH], **options)
 
 

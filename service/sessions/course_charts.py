@@ -105,7 +105,7 @@ def _panel(result: ParityResult, name: str, drawn: tuple[Array, Array, float], u
 
 
 def _marks(faults: tuple[CourseFault, ...], name: str, end: float) -> Iterator[Json]:
-    """From when to when; what it is is written where it happens."""
+    """Beginning and end of each fault; its kind is written in the panel of the sensor."""
     for fault in faults:
         who = joined(", ", fault.suspects)
         label = say(LABELS[fault.kind], who=who) if name in fault.suspects else ""
@@ -136,7 +136,7 @@ def _spec() -> Json:
 
 
 def _labels(faults: "alt.Chart") -> "list[alt.Chart]":
-    """Beside the moment, where there is more room."""
+    """Labels beside the moment, where there is more room."""
     look: Json = {"color": "var(--fail)", "fontWeight": "bold", "baseline": "top"}
     early = faults.transform_filter("!datum.late").mark_text(align="left", dx=4, **look)
     late = faults.transform_filter("datum.late").mark_text(align="right", dx=-4, **look)

@@ -60,7 +60,7 @@ class Doubt:
 
     @property
     def text(self) -> str:
-        """In a sentence or two."""
+        """The doubt in a sentence or two."""
         remedy = (
             ""
             if self.correction is None
@@ -134,7 +134,7 @@ class Reservation:
     parameter: str | None = None
     """Parameter against whose tolerance the size is held."""
     size: float | None = None
-    """In the tolerance's unit, SI; relative for a scale factor."""
+    """Size in the tolerance's unit, SI; relative for a scale factor."""
     uncertainty: float | None = None
     """Standard uncertainty of the size."""
     share: float | None = None

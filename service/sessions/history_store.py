@@ -123,7 +123,9 @@ class _LatestPoint:
 
     @property
     def value(self) -> float | None:
-        """For the axis the angle from the reference, without the turn of the whole block unless it is to stay."""
+        """Value of the parameter; for the axis the angle from the reference, without the turn of the whole block unless
+        it is to stay.
+        """
         row = self.row
         if row.parameter != "axis" or row.verdict is None:
             return row.value
@@ -139,7 +141,7 @@ class _LatestPoint:
 
     @property
     def deviation(self) -> float | None:
-        """From the reference."""
+        """Change from the reference."""
         row = self.row
         if row.common is None or not self.raw:
             return row.deviation
@@ -162,7 +164,7 @@ class _LatestPoint:
 
 
 def _tolerance(row: StoredPoint) -> float | None:
-    """In the unit of the value: a scale's tolerance is relative to its reference."""
+    """The tolerance in the unit of the value: a scale's tolerance is relative to its reference."""
     if row.parameter != "scale" or row.tolerance is None:
         return row.tolerance
     return None if row.reference is None else row.tolerance * abs(row.reference)

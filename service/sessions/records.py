@@ -75,9 +75,9 @@ class _StoredSession:
     notes: str
     """Notes of the file."""
     started_at: datetime
-    """When it was measured, with the offset from UTC that the file states; the upload's time if it does not say."""
+    """Start of the measurement, with the offset from UTC in the file; the upload's time where the file states none."""
     uploaded_at: datetime
-    """When it was uploaded, UTC."""
+    """Time of upload, UTC."""
     verdict: Verdict
     """The worst of the session's parameters."""
     reason: str
@@ -93,7 +93,7 @@ class _StoredSession:
     reservations: Hidden[Reservations] = ()
     """Reservations of the verdict."""
     state: RecordState = RecordState.ACCEPTED
-    """Only an accepted session counts for its unit."""
+    """State of the record; only an accepted session counts for its unit."""
     superseded_by: str | None = None
     """The replacement of a superseded session."""
     temperature: Hidden[float | None] = None
@@ -194,7 +194,7 @@ class SessionQuery(ListQuery):
     is_reference: bool | None = None
     """Whether later sessions are judged against it; None where either will do."""
     reserved: bool = False
-    """Only those whose verdict has a reservation."""
+    """Whether only sessions whose verdict has a reservation are wanted."""
     order: SessionOrder = SessionOrder.MEASURED
 
 
@@ -206,7 +206,7 @@ class HistoryPoint:
     session: str
     """Id of the session."""
     at: datetime
-    """When it was measured, UTC."""
+    """Start of the measurement, UTC."""
     sensor: str
     """Name of the sensor."""
     kind: str
@@ -224,17 +224,17 @@ class HistoryPoint:
     reference: float | None
     """The value that it is judged against."""
     deviation: float | None
-    """From the reference, as it was judged: relative for scale, else SI."""
+    """Change from the reference, as it was judged: relative for scale, else SI."""
     expanded: float | None
     """U of the deviation, of both sessions."""
     tolerance: float | None
-    """In the unit of the value; null where it is not judged."""
+    """Tolerance in the unit of the value; null where it is not judged."""
     verdict: Verdict
     """The state of this parameter at this session."""
     is_reference: bool
     """Whether the session is one that later ones are judged against."""
     axis: tuple[float, float, float] | None
-    """For the axis: its components in block axes."""
+    """Components of the axis in block axes; null for other parameters."""
     revision: int = 0
     """Model revision that it was computed under; 0 is the baseline."""
 

@@ -48,7 +48,7 @@ class StateChange:
     who: str
     """Person who changed it; `imu-health` for the service itself."""
     at: datetime
-    """When, UTC."""
+    """Time of the change, UTC."""
     why: str
     """Reason for the change."""
     superseded_by: str | None = None

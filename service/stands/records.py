@@ -111,7 +111,7 @@ class StandCondition:
     has_shifted: bool
     """Whether it now shifts every unit that is measured on it."""
     reason: str
-    """In one sentence."""
+    """Reason in one sentence."""
     evidence: tuple[StandEvidence, ...]
     """Most evident, of every quantity that units tell of."""
     shifts: tuple[StandEvidence, ...]
@@ -143,7 +143,7 @@ class StandCertificate:
     issued_by: str
     """The laboratory that calibrated the stand."""
     issued_on: date
-    """From this day on it speaks for the stand."""
+    """Day from which it holds for the stand."""
     valid_until: date
     """The last day on which it holds."""
 

@@ -76,7 +76,7 @@ NOT_YET = "Its certificate is dated {issued}, in the future: until then sessions
 HOLDS = "Sessions on this stand are traceable until {until}."
 EXPIRED = "Its certificate expired on {until}: traceability of sessions after that day is interrupted."
 SOON = timedelta(days=30)
-"""In which a laboratory can still have a stand calibrated before its certificate ends."""
+"""Time in which a laboratory can still have a stand calibrated before its certificate ends."""
 
 
 @dataclass(frozen=True)

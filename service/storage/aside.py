@@ -14,7 +14,7 @@ from service.storage.folders import make_folder, named_in, written_whole
 FOLDER = "aside"
 """Next to the folders of the uploads, whose names are two hexadecimal digits."""
 RETENTION = timedelta(hours=12)
-"""Since the last access: a mapping is finished on the same day."""
+"""Time since the last access: a mapping is finished on the same day."""
 MOST = 10
 """Most tables of one account: a new one replaces the oldest."""
 MOST_BYTES = 1024**3

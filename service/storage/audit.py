@@ -50,7 +50,7 @@ class AuditLine:
     id: int
     """Number of the line."""
     at: datetime
-    """When, UTC."""
+    """Time of the action, UTC."""
     who: str
     """Person as stated in the request, or by the name of the account."""
     account: str
@@ -58,7 +58,7 @@ class AuditLine:
     action: str
     """Action."""
     subject: str
-    """To what: a session, a unit, a type, a stand, an account."""
+    """Subject of the action: a session, a unit, a type, a stand, an account."""
     details: Json
     """State before and after, and the reason, as far as the action has them."""
     hash: str

@@ -100,7 +100,7 @@ class Landings:
         self._all: list[Landing] = []
 
     def new(self) -> Landing:
-        """For one more file."""
+        """A place for one more file."""
         self._all.append(Landing(self._folder))
         return self._all[-1]
 

@@ -65,7 +65,7 @@ class PageQuery:
 
     query: ListQuery
     keys: tuple[Key, ...]
-    """In the direction of reading: what comes before an entry is read backwards from it."""
+    """Keys in the direction of reading: entries before another are read backwards from it."""
     conditions: tuple[ColumnElement[bool], ...]
 
     def cut(self, rows: Select[*Columns]) -> Select[*Columns]:

@@ -111,7 +111,7 @@ class VerdictChange:
     before: Verdict
     """Verdict as it is stored."""
     after: Verdict
-    """Under the other tolerances."""
+    """Verdict under the other tolerances."""
     sensor: str
     """The sensor that it hangs on; empty where nothing would be judged."""
     parameter: str

@@ -18,7 +18,7 @@ class Service:
     unit: str
     """Serial number of the unit."""
     at: datetime
-    """When it was done, UTC."""
+    """Time of the service, UTC."""
     kind: str
     """Kind of service, such as a repair."""
     note: str
@@ -61,7 +61,7 @@ class ForeseenChange:
     kind: ForeseenKind
     """`verdict`, `next-calibration` or `flag`."""
     what: str
-    """In words: the session, the date or the flag."""
+    """Changed thing in words: the session, the date or the flag."""
     before: str
     """Present state, in words."""
     after: str
@@ -78,7 +78,7 @@ class ServicePreview:
     unit: str
     """Serial number of the unit."""
     at: datetime
-    """When the service was done, UTC."""
+    """Time of the service, UTC."""
     is_late: bool
     """Whether accepted sessions measured since are stored already."""
     changes: tuple[ForeseenChange, ...]
@@ -91,7 +91,7 @@ class Withdrawal:
     """Withdrawal of a note or file."""
 
     at: datetime
-    """When it was withdrawn, UTC."""
+    """Time of the withdrawal, UTC."""
     who: str
     """Person who withdrew it."""
     why: str
@@ -114,7 +114,7 @@ class Note:
     who: str
     """Person who wrote it."""
     recorded_at: datetime
-    """When it was written, UTC."""
+    """Time of writing, UTC."""
     withdrawal: Withdrawal | None
     """Withdrawal with its reason; null while the note holds."""
     session: str | None = None
@@ -138,7 +138,7 @@ class NewAttachment:
     who: str
     """Person who attached it."""
     at: datetime
-    """When, UTC."""
+    """Time of attachment, UTC."""
 
 
 @answer
@@ -181,7 +181,7 @@ class Customer:
     """Customer for whom a unit is calibrated, as its certificates name them."""
 
     name: str = ""
-    """Empty where it is not stated."""
+    """Name of the customer; empty where it is not stated."""
     address: str = ""
     """Contact address."""
 
@@ -195,7 +195,7 @@ class CustodyStep(StrEnum):
 
     ENTERED = "entered"
     MOVED = "moved"
-    """To another place, or to somebody else."""
+    """The unit went to another place, or to another custodian."""
     RETIRED = "retired"
     RETURNED = "returned"
     """Put back into use."""
@@ -213,7 +213,7 @@ class Custody:
     step: CustodyStep
     """Kind of change: `entered`, `moved`, `retired` or `returned`."""
     at: datetime
-    """When, UTC."""
+    """Time of the change, UTC."""
     who: str
     """Person who recorded it."""
     location_before: str
@@ -227,7 +227,7 @@ class Custody:
     remark: str
     """Reason or remark."""
     recorded_at: datetime
-    """When it was written, UTC."""
+    """Time of writing, UTC."""
 
 
 @answer
@@ -240,7 +240,7 @@ class Registered:
     unit_type: str
     """Name of its type."""
     owner: str
-    """To whom it belongs; empty where that is not stated."""
+    """Owner of the unit; empty where that is not stated."""
     location: str
     """Location of the unit."""
     custodian: str
@@ -248,9 +248,9 @@ class Registered:
     note: str
     """Remark on the unit."""
     registered_at: datetime | None
-    """When it was entered, UTC; null of a unit that came with its first session."""
+    """Time of entry, UTC; null for a unit that came with its first session."""
     retired_at: datetime | None
-    """Since when it is retired, UTC; null while it is in use."""
+    """Time of retirement, UTC; null while it is in use."""
 
 
 @dataclass(frozen=True)

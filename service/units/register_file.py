@@ -14,7 +14,7 @@ from service.units.records import NewEntry
 COLUMNS = ("serial", "unit_type", "owner", "location", "custodian", "note")
 """Possible columns of a table; the first is required."""
 LEFT = ("retired_on",)
-"""In what is exported; it is left as it is."""
+"""Columns of an export that an import leaves as they are."""
 MOST_ROWS = 2_000
 """More would hold up everybody who writes."""
 LONGEST = {"note": 2000}

@@ -48,7 +48,7 @@ class Units(Queries):
         return previous
 
     def customer(self, serial: str) -> Customer:
-        """For whom a unit is calibrated."""
+        """The customer for whom a unit is calibrated."""
         row = self._session.execute(
             select(UnitRow.customer, UnitRow.customer_address).where(UnitRow.serial == serial)
         ).one_or_none()
@@ -176,7 +176,7 @@ class Services(Queries):
         return tuple(service_record(row, owner) for row, owner in self._session.execute(query))
 
     def breaks(self, unit: int) -> tuple[datetime, ...]:
-        """When the epochs of a unit begin, its first one apart, in order."""
+        """The beginnings of a unit's epochs, its first one apart, in order."""
         query = select(ServiceRow.at).where(ServiceRow.unit_id == unit, IS_BREAK)
         return tuple(sorted(set(self._session.scalars(query))))
 

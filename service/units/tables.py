@@ -25,7 +25,7 @@ class UnitRow(Base):
     custodian: Mapped[str] = mapped_column(String(200), server_default="")
     remark: Mapped[str] = mapped_column(String(2000), server_default="")
     registered_at: Mapped[datetime | None]
-    """When it was entered in the register; None of a unit that came with its first session only."""
+    """Time of entry in the register; None for a unit that came with its first session only."""
     retired_at: Mapped[datetime | None]
 
 

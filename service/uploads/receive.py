@@ -199,7 +199,7 @@ class _Ready:
     made: MadeCalibration
     foreseen: Foreseen
     settled: str | None
-    """From `settled_by`, where its content is stored already."""
+    """Session from `settled_by`, where its content is stored already."""
 
 
 def _ready(storage: Storage, derivation: Deriving, received: Received, new: Calibrated) -> _Ready:

@@ -61,7 +61,7 @@ class Arriving:
             raise HTTPException(BAD_REQUEST, str(getattr(fault, "message", "The form cannot be read."))) from fault
 
     def new(self) -> Landing:
-        """For one more file."""
+        """A place for one more file."""
         return self._place.new()
 
     @property
@@ -288,7 +288,7 @@ REQUEST_BODY: Json = {
 
 
 MOST_FILES = 200
-"""In one form: some years of sessions of a unit; limits the number of parts that the parser holds."""
+"""Most files in one form: some years of sessions of a unit; limits the number of parts that the parser holds."""
 
 
 async def _files(arriving: ArrivingOf) -> tuple[SentFile, ...]:

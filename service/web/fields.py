@@ -15,7 +15,9 @@ TEXT = r"^[^\x00]*$"
 """PostgreSQL stores any character but NUL."""
 NUMBER = re.compile(r"\s*[-+]?[\d._]+(e[-+]?\d+)?\s*", re.IGNORECASE)
 FEWEST_MS = 100_000_000_000
-"""In milliseconds a day of March 1973, long before any measurement; in seconds the year 5138."""
+"""Least number taken for milliseconds: in milliseconds a day of March 1973, long before any measurement; in seconds the
+year 5138.
+"""
 MOST_MS = 7_258_118_400_000
 """The start of 2200, the latest date stored."""
 

@@ -114,7 +114,9 @@ def _http_error(request: Request, error: Exception) -> ProblemAnswer:
 
 
 def _cut_off(_: Request, error: Exception) -> ProblemAnswer:
-    """Nobody reads this answer; it is one line in the log and no fault of the service."""
+    """The answer to a request that was cut off: nobody reads it; it is one line in the log and no fault of the
+    service.
+    """
     return problem(400, CUT_OFF)
 
 

@@ -1,4 +1,4 @@
-"""From a frozen context to a page: the one Jinja environment and the globals of every template."""
+"""A frozen context → a page: the one Jinja environment and the globals of every template."""
 
 import json
 from collections.abc import Iterable, MutableMapping

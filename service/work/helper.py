@@ -104,7 +104,7 @@ class Helper:
 
 
 def work(pipe: Connection, settings: Settings, most: Limits) -> None:
-    """In the process: does requested work until the pipe is closed."""
+    """Does requested work in the process until the pipe is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # of a terminal; the service decides
     os.nice(NICENESS)  # a request that waits for what it holds leaves it the core
     limits.use(most)

@@ -58,7 +58,7 @@ class Kind:
     most: int = MOST_ATTEMPTS
     put_off: timedelta = PUT_OFF
     is_awaited: bool = False
-    """Somebody may wait for one, which is then done first."""
+    """Whether somebody may wait for a piece, which is then done first."""
 
     def queue(self, store: Store) -> WorkQueue:
         """The queue of this kind of work."""

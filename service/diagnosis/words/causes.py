@@ -41,7 +41,9 @@ def cause_on(identifier: str, sensors: Sequence[str]) -> str:
 
 
 def weighty_first(findings: Sequence[Finding]) -> tuple[Finding, ...]:
-    """In the order of reading; how the block sits since earlier sessions, without which it is judged, comes last."""
+    """The findings in the order of reading; the seating of the block since earlier sessions, which is no ground for the
+    verdict, comes last.
+    """
     return tuple(sorted(findings, key=_is_seating))
 
 

@@ -40,7 +40,7 @@ class CauseChoice:
     cause: str
     name: str
     share: str
-    """Among all known causes."""
+    """Probability among all known causes."""
     now: str
     """Separation from the first one in this session."""
     measurement: str

@@ -20,7 +20,7 @@ SHARES = (
     (0.72, 0.78, "of {sensor} falls by a quarter: {before} → {after}"),
     (0.98, 1.02, "of {sensor} does not fall: {before} → {after}"),
 )
-"""From which share of the error before to which, and what is said of it."""
+"""Least and largest remaining share of the error, and the sentence for it."""
 FALLS = "of {sensor} falls from {before} to {after}"
 RISES = "of {sensor} rises from {before} to {after}"
 

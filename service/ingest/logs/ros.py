@@ -75,6 +75,6 @@ def _streams(topic: str, table: Array) -> Iterator[Stream]:
 
 
 def _facts(streams: Iterable[Stream]) -> dict[str, object]:
-    """When it was measured, where the clock is plausible."""
+    """The start of the measurement, where the clock is plausible."""
     first = max((float(stream.time[0]) for stream in streams if len(stream.time)), default=0.0)
     return {"started_at": datetime.fromtimestamp(first, UTC).isoformat()} if EARLIEST < first < LATEST else {}

@@ -197,7 +197,7 @@ def _is_warm(stream: Stream) -> bool:
 
 
 def _sensor(name: str, stream: Stream, axis: int) -> dict[str, object]:
-    """In SI and along the axes of the log: its calibration is what the session determines."""
+    """The entry of a sensor in SI and along the axes of the log: the session determines its calibration."""
     entry: dict[str, object] = {
         "name": name,
         "nominal_axis": [float(k == axis) for k in range(len(AXES))],

@@ -145,8 +145,9 @@ class Histories:
 def histories(
     changes: Sequence[ChangeRow], references: Sequence[ReferenceRow], left: Mapping[Place, Left] = NOTHING_EXPLAINED
 ) -> Histories:
-    """In the order in which sensors and parameters were first judged; of changes that a diagnosis explains in part,
-    what is left."""
+    """The histories in the order in which sensors and parameters were first judged; of changes that a diagnosis
+    explains in part, only the rest.
+    """
     groups = _groups(changes, references)
     dated = [_track(key, rows, reference, left) for key, (rows, reference) in groups.items()]
     return Histories(tuple(groups), tuple(track for track, _ in dated), tuple(at for _, at in dated), left)

@@ -43,9 +43,9 @@ class DueLine:
     custodian: str
     """Custodian of the unit."""
     owner: str
-    """To whom it belongs."""
+    """Owner of the unit."""
     due: datetime | None
-    """When its next calibration is due, UTC; null where that is not known."""
+    """Due date of its next calibration, UTC; null where that is not known."""
     days: int | None
     """Whole days until then; negative where it is overdue."""
     condition: str
@@ -72,7 +72,7 @@ def due_counts(dates: Iterable[datetime | None], now: datetime) -> tuple[DueCoun
 
 
 def period(due: datetime | None, now: datetime) -> str:
-    """In which a date lies."""
+    """The period of a due date."""
     if due is None:
         return UNKNOWN
     return OVERDUE if due < now else f"{due:%Y-%m}"

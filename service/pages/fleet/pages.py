@@ -237,6 +237,6 @@ def fleet_row(unit: UnitSummary, usable: Usable) -> FleetRow:
 
 
 def margin_of(used: ToleranceUsed) -> Margin:
-    """In per cent of the tolerance."""
+    """The used tolerance as words and a bar, per cent."""
     deviation, expanded = 100 * used.deviation, 100 * used.expanded
     return Margin(used.words, min(deviation, BAR_LIMIT), min(deviation + expanded, BAR_LIMIT))

@@ -53,7 +53,7 @@ class ToDo:
     text: str
     """Action or fact to know, in a sentence."""
     since: datetime | None
-    """Since when, UTC; null where that is not known."""
+    """Time since which it waits, UTC; null where that is not known."""
     page: str
     """Address of the page where it is done."""
 

@@ -60,7 +60,7 @@ class ComparisonView:
     Empty where they were not measured on one stand.
     """
     services: tuple[Service, ...]
-    """Between the two."""
+    """Services between the two."""
 
     @property
     def stand(self) -> str | None:

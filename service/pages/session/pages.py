@@ -137,7 +137,7 @@ class SessionView:
     retired: str = ""
     """Remark that its unit is retired, with the date; empty where it is in use."""
     causes: tuple[str, ...] = ()
-    """In the model that its calibration in force was made under."""
+    """Causes in the model of its calibration in force."""
     earlier: tuple[int, ...] = ()
     """Model revisions that it was calibrated under before."""
 

@@ -134,7 +134,7 @@ class ListedStand:
     word: StandWord
     condition: str
     certificate: str
-    """Until when sessions are traceable, as a cell of a table."""
+    """Last day of traceable sessions, as a cell of a table."""
     flags: str
 
 

@@ -60,7 +60,9 @@ def put_in_force(storage: Storage, name: str, now: datetime, *, who: str, why: s
 
 
 def learned(storage: Storage, name: str) -> tuple[TypeLaw, ...]:
-    """From the sessions that are accepted now; of measured units, or of simulated ones where there is no other."""
+    """The temperature laws learned from the sessions that are accepted now; of measured units, or of simulated ones
+    where there is no other.
+    """
     with storage.database.reading() as store:
         known = UnitTypes(store).get(name)
         units = Fleet(store).units(FleetQuery(unit_type=name, order=Order.SERIAL, limit=MOST_LISTED, retired=None))

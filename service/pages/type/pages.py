@@ -52,7 +52,7 @@ from service.web.dependencies import Now, Reading, SettingsOf
 from service.web.render import render
 
 MOST_TYPES = 500
-"""In the list: no maker has more kinds of unit."""
+"""Most types in the list: no maker has more kinds of unit."""
 MOST = 25
 """Units that the page of one type lists: a screen; the fleet's page has all."""
 
@@ -156,7 +156,7 @@ class RevisionRow:
     limits: tuple[tuple[str, str], ...]
     """Parameters with their limits."""
     laws: str
-    """From how many units the temperature laws in force are."""
+    """Number of units behind the temperature laws in force, in words."""
 
 
 @dataclass(frozen=True)
@@ -181,7 +181,7 @@ class TypePage:
     share: str
     """Share of the tolerance, %, from which on a change has a flag, in the form."""
     laws: tuple[str, ...]
-    """Over temperature, that are in force."""
+    """Temperature laws in force, in words."""
 
 
 def types_page(types: Sequence[TypeLine]) -> TypesPage:

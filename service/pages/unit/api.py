@@ -151,7 +151,7 @@ def read_outlook(
     reader: ReaderOf,
     until: Annotated[Moment | None, Query(description="Also the risk of waiting until this date.")] = None,
 ) -> OutlookAnswer:
-    """When the unit must come back and why: drift, forecast to tolerance, risk of waiting."""
+    """The unit's next calibration and its reason: drift, forecast to tolerance, risk of waiting."""
     reader.until_dated(serial)
     found = outlook_of(store, serial, now)
     risk = None if until is None else found.risk_by(until)
@@ -167,7 +167,7 @@ def change_lot(serial: Serial, new: NewLot, storage: StorageOf, now: Now, person
 
 @router.get("/{serial:path}/customer", responses=errors(404, 422))
 def read_customer(serial: Serial, store: Reading) -> Customer:
-    """For whom the unit is calibrated."""
+    """The customer for whom the unit is calibrated."""
     return Units(store).customer(serial)
 
 

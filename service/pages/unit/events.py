@@ -70,7 +70,7 @@ class StageTable:
     found: StoredSession
     left: StoredSession | None
     rows: tuple[StageRow, ...]
-    """Empty where the unit was found at its reference."""
+    """Rows by parameter; empty where the unit was found at its reference."""
 
 
 def events_of(

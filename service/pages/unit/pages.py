@@ -141,9 +141,9 @@ class UnitView:
     why: tuple[str, ...]
     """Reasons for the permitted use, and the course of events."""
     measured: str
-    """When, where and how warm the session that decides was measured; empty before the first."""
+    """Time, place and temperature of the session that decides; empty before the first."""
     due: str
-    """When the next calibration is due, where that does not lead."""
+    """Due date of the next calibration, where that does not lead."""
     worst: ChartSet | None
     """The history of the parameter that the verdict hangs on; None where none was judged."""
     shares: ShareTable | None

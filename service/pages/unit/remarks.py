@@ -34,7 +34,7 @@ class Remarks:
 
     unit: str
     session: str
-    """Empty for the unit as a whole."""
+    """Id of the session; empty for the unit as a whole."""
     notes: tuple[Note, ...]
     files: tuple[AttachmentLine, ...]
     limit: str

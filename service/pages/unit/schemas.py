@@ -80,7 +80,7 @@ class UnitInUse(SaidUnit):
     """One unit in short, and whether it may be used."""
 
     usable: bool
-    """In doubt it is false."""
+    """Whether the unit may be used; false in doubt."""
     use: str
     """Permitted use in words, with the action."""
 

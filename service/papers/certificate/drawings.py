@@ -55,7 +55,9 @@ def _rank(decision: Decision) -> float:
 
 
 def residuals_of(found: CertifiedSession, language: Language) -> tuple[Drawing, ...]:
-    """Against the angle of the head on a stand, the course of a recording in service, else in the order measured."""
+    """Residuals against the angle of the head on a stand, the course of a recording in service, else in the order
+    measured.
+    """
     chart_sets = charts_of_fit(found.report.calibration)
     first = chart_sets[0].name.rpartition("-")[2] if chart_sets else ""
     selected = [

@@ -24,7 +24,7 @@ from service.sessions.records import ALL_PARAMETERS
 from service.sessions.words.conditions import condition_of
 
 NOT_OBSERVABLE = "not observable"
-"""In place of a value that the session cannot determine."""
+"""Text in place of a value that the session cannot determine."""
 
 
 @dataclass(frozen=True)

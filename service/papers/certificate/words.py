@@ -117,7 +117,7 @@ class SignatureLine:
 
     by: str
     who: str
-    """Empty where it is signed by hand."""
+    """Name of the signer; empty where it is signed by hand."""
     at: str
     states: str
     bound: str

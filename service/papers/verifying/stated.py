@@ -84,7 +84,7 @@ class Printed:
 
     @property
     def customer(self) -> Customer:
-        """For whom."""
+        """Customer of the certificate."""
         return Customer(*self._contact(".//dcc:customer/"))
 
     def _contact(self, path: str) -> tuple[str, str]:
@@ -93,7 +93,7 @@ class Printed:
         return name, address
 
     def issue(self) -> Issue:
-        """Under which number; ValueError where its date is none."""
+        """Number and date of the certificate; ValueError where its date is none."""
         date = datetime.fromisoformat(self.text(f"{CORE}dcc:issueDate")).replace(tzinfo=UTC)
         replaced = self.text(f"{CORE}dcc:reportAmendedSubstituted/dcc:replacedUniqueIdentifier") or None
         return Issue(self.text(f"{CORE}dcc:uniqueIdentifier"), self.identified("Session"), 0, date, "", replaced, "")

@@ -14,7 +14,7 @@ SERVICE = "imu-health"
 
 @dataclass(frozen=True)
 class Occasion:
-    """On which unit, by what and when flags are settled."""
+    """Unit, session and time at which flags are settled."""
 
     unit: int
     session: str | None

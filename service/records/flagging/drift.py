@@ -142,5 +142,5 @@ def taken_by(change: FoundChange, years: float) -> float:
 
 
 def comes_back(outlook: UnitOutlook, unit_type: UnitType) -> datetime:
-    """When the next calibration is due; where the unit waits for no date, the longest interval from the latest."""
+    """The due date of the next calibration; where the unit waits for no date, the longest interval from the latest."""
     return outlook.due or outlook.risk[0].at + timedelta(days=unit_type.maximum_interval_days)

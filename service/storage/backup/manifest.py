@@ -68,7 +68,7 @@ class Manifest(_Part):
     """Revision of the schema."""
     made_at: datetime
     tables: tuple[TableContents, ...]
-    """In order of insertion: referenced tables come first."""
+    """Tables in order of insertion: referenced tables come first."""
     files: tuple[Hash, ...]
     lost: tuple[str, ...]
     """Hashes of files that sessions name, but that were missing or damaged when the backup was made."""

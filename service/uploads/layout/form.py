@@ -63,7 +63,7 @@ class LayoutForm:
     """Contents of the form."""
 
     file: SentFile
-    """Empty where it was not sent again."""
+    """Sent file; empty where it was not sent again."""
     fields: Mapping[str, str]
     mapping: Json | None
     """Mapping of the previous page; None at first."""
