@@ -1,4 +1,4 @@
-"""The one place where everything is joined."""
+"""The application, assembled from all subjects."""
 
 from collections.abc import AsyncIterator, Callable, Iterable, Iterator
 from contextlib import AbstractAsyncContextManager, asynccontextmanager
@@ -36,7 +36,7 @@ DESCRIPTION = (
 )
 """Heads the description of the API."""
 LAST_WORK = 5.0
-"""Seconds that a stopping service waits for the message at hand; the next start takes up what is left."""
+"""Seconds that a stopping service waits for the current message; the next start takes up the rest."""
 
 
 def utc_now() -> datetime:
@@ -50,9 +50,9 @@ def create_app(
     most: limits.Limits | None = None,
     filling: Filling | None = None,
 ) -> FastAPI:
-    """The service on the database and the folder that the settings name; the schema must be up to date. ``most``:
-    limits instead of those of the settings' machine, for tests; ``filling``: what is stored beside the first
-    requests."""
+    """The service on the database and the folder in the settings; the schema must be up to date. ``most``: limits
+    instead of those of the settings' machine, for tests; ``filling``: sessions to store beside the first requests.
+    """
     limits.use(most or limits.limits_of(settings))
     application = _application(settings, clock, {} if filling is None else {Filling: filling})
     app = FastAPI(

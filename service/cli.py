@@ -22,7 +22,7 @@ from service.languages.language import Language
 
 
 class OnDemand(Mapping[str, Any]):
-    """The commands by name, each imported when it is looked up; a name that is none costs no import."""
+    """The commands by name, each imported when it is looked up; an unknown name costs no import."""
 
     def __getitem__(self, name: str) -> Any:
         return _command(name)

@@ -43,7 +43,7 @@ RETIRED = {
     "OIDC_ISSUER": ("OIDC_NAME",),
     "OIDC_ROLES": ("OIDC_NEW_ACCOUNTS",),
 }  # fmt: skip
-"""Variables of earlier versions, under the one that stands in their place: whoever set one relied on it."""
+"""Variables of earlier versions, under their successor: whoever set one relied on it."""
 
 
 def retired(environment: Mapping[str, str]) -> dict[str, str]:

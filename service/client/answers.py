@@ -45,7 +45,7 @@ class Receipt(Said):
     id: str
     unit: str
     created: bool
-    """False where the same content was stored already."""
+    """Whether it is new; false where the same content was stored already."""
     state: str
     url: str
 
@@ -140,7 +140,7 @@ class Diagnosis:
     state: str
     summary: str
     findings: tuple[Finding, ...]
-    """Strongest first."""
+    """Findings, strongest first."""
     unexplained: bool
     verdict_after: Verdict | None
     """Verdict with the named causes in the model."""

@@ -61,7 +61,7 @@ class HidingRequest:
     """Request for a hidden cause."""
 
     cause: Cause | None
-    """None for any."""
+    """Requested cause; None for any."""
     strength: float
     exact: bool
     """Whether that strength was requested."""
@@ -117,7 +117,7 @@ def hidden_in(
 
 
 def _remedy(cause: Cause, sessions: list[CalibrationSession]) -> str:
-    """``; give --warming 3`` for an option that provides what is missing."""
+    """The option that provides a missing condition: ``; give --warming 3``."""
     if "gravity" in cause.needs and sessions[-1].stand is not None:
         return "; give --programme arbitrary-orientations"
     if cause.kind == GYROSCOPE and all(sensor.kind != GYROSCOPE for sensor in sessions[-1].sensors):

@@ -89,7 +89,7 @@ def _demonstration(settings: Settings) -> Filling | None:
         return None
 
     def store(advance: Callable[[], None]) -> None:
-        """Every session of the fleet."""
+        """Stores every session of the fleet."""
         filled = Storage(open_database(settings.database), Files(settings.files))
         try:
             demo_fleet.fill(filled, settings.coverage_factor, advance)

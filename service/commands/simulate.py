@@ -107,7 +107,7 @@ class Simulated:
     """Session before its pulses are counted."""
     truth: SensorParameters | Truth
     draw: StandDraw | None
-    """None without a stand."""
+    """Errors of the stand; None without a stand."""
     law: ThermalLaw | None = None
     """Effect of temperature; None where a programme holds it."""
 

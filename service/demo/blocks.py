@@ -23,7 +23,7 @@ ACCELEROMETER_SCALE = 0.12
 GYRO_SCALE = 1 / (0.6 * ARCSEC)
 """Pulses per rad: 0.6″ a pulse."""
 COUNT_TIME = 100.0
-"""s."""
+"""Time over which pulses are counted, s."""
 ELEVATION_DEG = 40.0
 """Elevation of the head, degrees, in the demonstration fleet and in `imu-health simulate`."""
 MICRO_G = 9.80665e-6
@@ -124,7 +124,7 @@ class ParameterMove:
     """Change of one parameter of one sensor: ppm, µg (gyro: °/h), µg/g², arcsec."""
 
     sensor: int
-    """Counted from 0."""
+    """Number of the sensor, from 0."""
     parameter: str
     amount: float
 

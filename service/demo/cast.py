@@ -37,7 +37,7 @@ class Jump:
 
 @dataclass(frozen=True)
 class Intervention:
-    """A service on the unit, and what it changed."""
+    """A service on the unit, with its effects."""
 
     at: datetime
     kind: str

@@ -97,14 +97,14 @@ class EvidenceView:
     gains: tuple[str, ...]
     """Gain of every finding in turn for its sensors, in one sentence."""
     gain: GainView | None
-    """None where no cause is named."""
+    """Gain of the named causes; None where no cause is named."""
     seen: tuple[SeenCause, ...]
     blind: tuple[BlindCauses, ...]
     notes: tuple[str, ...]
 
 
 FOLLOW = 3
-"""Seconds: the page itself waits for a while."""
+"""Seconds until the page looks again: the page itself waits for a while."""
 
 
 @dataclass(frozen=True)
@@ -260,7 +260,7 @@ def accept(
     note: Annotated[str, Form(max_length=2000, pattern=NO_NUL)] = "",
     again: Annotated[bool, Form()] = False,
 ) -> RedirectResponse:
-    """Accepts a named cause, and shows what it gains and, where stored sessions are computed again, what moves."""
+    """Accepts a named cause, and shows its gain and, where stored sessions are computed again, the results."""
     made = accept_model(reception.storage, reader.made(id), NewModel(cause, scope, by, note, again=again), now)
     recompute_beside(reception, now)
     return RedirectResponse(f"/models/{made.id}", SEE_OTHER)

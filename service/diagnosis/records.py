@@ -52,7 +52,7 @@ class StoredDiagnosis:
     state: DiagnosisState
     summary: str
     found: Diagnosed | None
-    """None where the session could not be diagnosed, or where no causes are looked for."""
+    """Contents of the diagnosis; None where the session could not be diagnosed, or where no causes are looked for."""
     document: str | None
     """imu-diagnosis/1, JSON as it was written: what the API hands out; None where there was nothing to write."""
     verdict_after: Verdict | None
@@ -71,7 +71,7 @@ class DiagnosisReport:
 
     session: StoredSession
     diagnosis: StoredDiagnosis | None
-    """None while it is being made."""
+    """Diagnosis; None while it is being made."""
     calibration: Calibration
     """Calibration in force."""
     revisions: tuple[ModelRevision, ...]

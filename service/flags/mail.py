@@ -34,7 +34,7 @@ NO_MAIL = MailServer()
 
 
 def send(server: MailServer, address: str, notice: Notice) -> tuple[bool, str]:
-    """Whether the server accepted the message, and what it said."""
+    """Whether the server accepted the message, and its answer."""
     try:
         with _connected(server) as client:
             client.send_message(_message(server, address, notice))

@@ -61,7 +61,7 @@ async def _deliver_until(outbox: "Outbox", guard: Guard, stop: Event) -> None:
 
 
 def deliver_due(storage: Storage, ways: "Ways", clock: Callable[[], datetime], metrics: Metrics) -> int:
-    """Attempts what is due, waits for every receiver, and returns how much that was."""
+    """Attempts all due messages, waits for every receiver, and returns their number."""
 
     async def once() -> int:
         async with turns_of(Outbox(storage, ways, clock), Guard(metrics)) as turns:
@@ -128,7 +128,7 @@ class DeliveryTurns:
         await asyncio.gather(*self._running.values())
 
     async def cancel(self) -> None:
-        """Ends every turn now; what it has claimed is sent again once the claim has run out."""
+        """Ends every turn now; claimed messages are sent again once the claim has run out."""
         for turn in self._running.values():
             turn.cancel()
         await asyncio.gather(*self._running.values(), return_exceptions=True)
@@ -155,7 +155,7 @@ async def turns_of(outbox: Outbox, guard: Guard) -> AsyncIterator[DeliveryTurns]
 
 
 async def _attempt(outgoing: Outgoing, ways: Ways, http: "httpx.AsyncClient") -> tuple[bool, str]:
-    """Whether the receiver accepted, and what it said; its answer's body is never read."""
+    """Whether the receiver accepted, and its answer, whose body is never read."""
     fault = fault_of(outgoing.webhook.url, ways.hosts, has_mail=ways.mail.is_there)
     if fault:
         return False, f"the address {fault}"

@@ -209,7 +209,7 @@ class Outgoing:
 
     delivery: int
     attempt: int
-    """Counted from 1."""
+    """Number of the attempt, from 1."""
     webhook: Webhook
     notice: Notice
     matter: Matter | None

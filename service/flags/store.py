@@ -87,7 +87,9 @@ class FlagQuery(ListQuery):
     unit_type: str | None = None
     """Name of the type that the flags are about as a whole."""
     stand: str | None = None
-    """Name of the stand that the flags are about, whether units, single sessions or all of them together tell of it."""
+    """Name of the stand that the flags are about, whether found by units, by single sessions or by all of them
+    together.
+    """
     assignee: Assignee | None = None
     """Assignee, by the account or, where the flag names none, by the name; the one without a name stands for unassigned
     flags.

@@ -57,9 +57,9 @@ class UnitSummary:
     reason: str
     """Reason for the verdict, in one sentence."""
     worst_sensor: str | None
-    """The sensor that the verdict hangs on."""
+    """Sensor that sets the verdict."""
     worst_parameter: str | None
-    """The parameter that the verdict hangs on."""
+    """Parameter that sets the verdict."""
     margin: float | None
     """1 − (|d| + U)/T of it: 1 is no change, 0 the limit of a pass, negative beyond."""
     diagnosis: str = ""
@@ -89,7 +89,7 @@ class UnitSummary:
     is_undated: Hidden[bool] = False
     """Whether ``due`` and its outlook are still to be worked out with its latest records."""
     deviation: Hidden[float | None] = None
-    """|d|/T of the parameter that the verdict hangs on."""
+    """|d|/T of the parameter that sets the verdict."""
     failed: Hidden[str] = ""
     """Reason why the results from its latest records could not be computed; empty where they were, or still are
     being.
@@ -195,6 +195,6 @@ class UnitKnown:
     reference_session: str | None
     """Reference for the next session; None where the next one becomes the reference."""
     outlook: UnitOutlook | None
-    """None before a session was judged."""
+    """Outlook of the unit; None before a session was judged."""
     entry: Registered
     """Entry in the register."""

@@ -62,18 +62,18 @@ CHOICES = ("types", "stands", "lots", "locations", "custodians")
 
 @dataclass(frozen=True)
 class Refreshed:
-    """A unit's row, and what it said before."""
+    """A unit's row, and its earlier verdict."""
 
     latest: StoredSession | None
-    """None where the unit has no accepted session, and so no row."""
+    """Latest accepted session; None where the unit has none, and so no row."""
     before: Verdict | None
-    """None where there was no row."""
+    """Earlier verdict; None where there was no row."""
     was_reference: bool
     """Whether the latest session was one that later ones are judged against, where its verdict was another."""
 
 
 OPEN_OF_GROUPS = select(func.count()).where(FlagRow.scope != Scope.UNIT, FlagRow.state != RESOLVED).scalar_subquery()
-"""Open flags of types and stands."""
+"""Number of open flags of types and stands."""
 
 
 _UNIT: BindParameter[int] = bindparam("unit")

@@ -54,7 +54,7 @@ FACTORS = {BY_ANGLE: degrees(1.0), "(t − t̄)": 1 / 3600}
 
 @dataclass(frozen=True)
 class Element:
-    """One amplitude of a finding: its place in the tuples, its name and what it is read in."""
+    """One amplitude of a finding: its place in the tuples, its name and its measure."""
 
     number: int
     name: str

@@ -52,7 +52,7 @@ class Members:
     """The sessions that a group's answer rests on."""
 
     sessions: tuple[Member, ...]
-    """Oldest first."""
+    """Sessions, oldest first."""
     left_out: int
     """Older ones, beyond the most that are pooled."""
 

@@ -27,7 +27,7 @@ HOMES = {Level.UNIT: "units", Level.TYPE: "unit-types", Level.STAND: "stands"}
 MOST_FOUND = 4
 """Groups that the fleet page names before it counts the rest."""
 MOST_REVISIONS = 10_000
-"""More than anybody accepts."""
+"""Most revisions that are read, more than anybody accepts."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class GroupSection:
 
     group: Group
     view: GroupView | None
-    """None until it is made of the group's records of now."""
+    """Contents of the section; None until it is made of the group's current records."""
     failed: str
     """Reason why it cannot be made; empty otherwise."""
     effects: tuple[Drawn, ...] = ()
@@ -63,7 +63,7 @@ class FoundLine:
     found: tuple[tuple[str, str, str], ...]
     """Address of the group's page, the group in words, and its findings."""
     more: int
-    """Others."""
+    """Number of other groups."""
 
 
 def found_line(announced: Announced) -> FoundLine | None:

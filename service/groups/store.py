@@ -67,8 +67,9 @@ def _empty(group: Group) -> GroupDiagnosis:
 
 
 MOST = 60
-"""Sessions of a group that are pooled, the newest. An effect of one standard error in each reaches 8, at which it is
-named, at the 64th: fewer would miss what is worth a name. More would cost minutes, and tell of years ago."""
+"""Most sessions of a group that are pooled, the newest. An effect of one standard error in each reaches 8, at which it
+is named, at the 64th: fewer would miss effects worth naming. More would cost minutes, and reach years back.
+"""
 KEYS = {Level.UNIT: UnitRow.id, Level.TYPE: UnitTypeRow.id, Level.STAND: StandRow.id}
 CALLED = {Level.UNIT: UnitRow.serial, Level.TYPE: UnitTypeRow.name, Level.STAND: StandRow.name}
 WORDS = {Level.UNIT: "unit", Level.TYPE: "unit type", Level.STAND: "stand"}
@@ -134,8 +135,9 @@ class Groups(Queries):
         return None if row is None else _answer(row)
 
     def known(self, level: Level, name: str) -> tuple[Group, GroupAnswer | None, bool, str]:
-        """A group by its name, what is stored of it, whether it is asked for again since, and why that failed; in one
-        query."""
+        """A group by its name, its stored answer, whether it is requested again since, and the reason why that failed;
+        in one query.
+        """
         row, number = GroupDiagnosisRow, KEYS[level]
         work = (WorkRow.kind == WorkKind.GROUP, WorkRow.key == literal(f"{level} ") + cast(number, String))
         again, failed = select(WorkRow.id).where(*work).exists(), select(func.max(WorkRow.failed)).where(*work)

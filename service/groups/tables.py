@@ -19,7 +19,7 @@ class SessionStatisticsRow(Base):
     session_id: Mapped[str] = mapped_column(ForeignKey("sessions.id"), primary_key=True)
     format: Mapped[str] = mapped_column(String(40))
     document: Mapped[bytes | None]
-    """None while they are being made, or where they cannot be."""
+    """Statistics; None while they are being made, or where they cannot be."""
     why: Mapped[str] = mapped_column(Sentence)
     """Reason why they cannot be made; empty otherwise."""
     attempts: Mapped[int]
@@ -40,6 +40,6 @@ class GroupDiagnosisRow(Base):
     own: Mapped[str] = mapped_column(Sentence)
     """Findings that belong to the group itself; empty for none."""
     document: Mapped[bytes | None]
-    """None where it could not be made."""
+    """imu-fleet-diagnosis/1; None where it could not be made."""
     estimator_version: Mapped[str] = mapped_column(String(40))
     created_at: Mapped[datetime]

@@ -261,7 +261,7 @@ class LastingEffect:
     advice: str
     choices: tuple[GroupChoice, ...]
     rows: tuple[ForestRow, ...]
-    """Newest first."""
+    """Effect in single sessions, newest first."""
 
 
 @dataclass(frozen=True)
@@ -318,7 +318,7 @@ def _effect(finding: GroupFinding, accepted: Sequence[ModelRevision]) -> Lasting
 
 
 def _spread(finding: GroupFinding) -> str:
-    """The largest of its sensors, or of what it acts on."""
+    """The largest scatter among its sensors, or among its effects."""
     largest = max(finding.spread, default=0.0)
     return measured(largest, None, amplitude_measure(finding.cause, finding.units[0], largest))
 

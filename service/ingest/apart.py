@@ -174,7 +174,7 @@ def _refused_if_process_ended(filename: str, most: Limits) -> Iterator[None]:
 
 @contextmanager
 def turn() -> Iterator[None]:
-    """Holds a slot for reading in a separate process until all work on the file is done: what it holds may be large."""
+    """Holds a slot for reading in a separate process until all work on the file is done: its contents may be large."""
     with _slots.taken(limits.in_force().at_once):
         yield
 

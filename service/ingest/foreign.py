@@ -28,7 +28,7 @@ KINDS = (
     (0, b"\x1f\x8b\x08", ARCHIVE), (0, b"7z\xbc\xaf\x27\x1c", ARCHIVE), (0, b"Rar!\x1a\x07", ARCHIVE),
     (0, b"\xfd7zXZ\0", ARCHIVE), (0, b"\x28\xb5\x2f\xfd", ARCHIVE), (0, b"BZh", ARCHIVE),
 )  # fmt: skip
-"""Byte at which it stands, what stands there, and what is said."""
+"""Place of the first byte, the bytes, and the refusal."""
 WEB_PAGE = (b"<!doctype html", b"<html")
 MEMBERS = (("word/", DOCX), ("ppt/", SLIDES), ("xl/workbook.bin", XLSB))
 """Refusals of archives, by the beginning of a member's name."""

@@ -112,7 +112,7 @@ class Job:
     kind: JobKind
     """Kind of work."""
     scope: Scope | None
-    """None for the whole fleet."""
+    """Scope of the work; None for the whole fleet."""
     subject: str
     """Serial number or name; of an upload the file's; empty for the whole fleet."""
     form: Hidden[str]
@@ -136,7 +136,7 @@ class Job:
     total: int
     """Pieces in all."""
     cursor: Hidden[int]
-    """The last finished piece, after which work resumes."""
+    """Last finished piece, after which work resumes."""
     recomputed: int
     """Sessions that have another calibration since."""
     verdicts: int
@@ -144,7 +144,7 @@ class Job:
     failed: int
     """Pieces that could not be done."""
     failures: tuple[JobFailure, ...]
-    """The first hundred of them."""
+    """Pieces that failed, the first hundred of them."""
     held_up: str
     """Reason why it waits although it was begun; empty where it does not."""
     made: Made | None

@@ -59,7 +59,9 @@ def basis_of(store: Store, new: Checked, model: Model) -> CalibrationBasis:
 
 @outside_writing
 def calibrate(new: Checked, basis: CalibrationBasis) -> Calibrated:
-    """The numerical part, with no store at hand; SessionError where the session cannot tell what it should."""
+    """The calibration of a session, computed without access to the store; SessionError where the session cannot tell
+    what it should.
+    """
     if basis.compared_with is None:
         return Calibrated(new, basis.model, _under(basis.model, new.session), None)
     found = ReferenceComparison(

@@ -47,14 +47,14 @@ class Size:
     """Size of an effect beside a tolerance."""
 
     sensors: tuple[str, ...]
-    """The one where it is largest; empty for what acts on all."""
+    """Sensor where it is largest; empty for an effect on all."""
     kind: str
     """Kind of the sensor."""
     parameter: str
     value: float
     """SI; relative for a scale factor."""
     sigma: float | None
-    """None where it is not known."""
+    """Standard uncertainty; None where it is not known."""
     tolerance: float
 
     @property
@@ -130,7 +130,7 @@ def _left(finding: Finding, k: int) -> float:
 
 
 def _effect(cause: str, unit: str, kind: str, residuals: Residuals) -> tuple[str | None, float]:
-    """The parameter that an amplitude is held against, and what it is multiplied by."""
+    """The parameter that an amplitude is held against, and the factor on it."""
     known = find(cause)
     if known is not None and known.grows_an_angle:
         return "axis", _span(residuals.time)
@@ -141,7 +141,7 @@ def _effect(cause: str, unit: str, kind: str, residuals: Residuals) -> tuple[str
 
 
 def by_input(unit: str) -> str:
-    """``input/K`` of ``m/s²/K``; what is per unit of specific force stays so."""
+    """The unit in terms of the input, ``input/K`` for ``m/s²/K``; a unit per specific force stays so."""
     head = unit.removesuffix("/(m/s²)")
     return f"{head.replace('m/s²', 'input').replace('rad/s', 'input')}{unit[len(head) :]}"
 

@@ -60,7 +60,7 @@ def _reference(session: StoredSession, programmes: tuple[str, ...]) -> Subquery:
 
 
 def _earlier(session: StoredSession, most: int) -> Subquery:
-    """The last ones of the same programme, not before the epoch of the session."""
+    """The last sessions of the same programme, not before the epoch of the session."""
     since, _ = epoch_bounds(UnitRow.id.expression, session.started_at)
     query = select(SessionRow.temperature, SessionRow.verdict).join(UnitRow, UnitRow.id == SessionRow.unit_id)
     earlier = query.where(

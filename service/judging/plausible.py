@@ -44,7 +44,7 @@ ROUNDED = np.cos(np.radians(1.0))
 LARGEST_BIAS = {ACCELEROMETER: 2 * STANDARD_GRAVITY, GYROSCOPE: np.radians(100.0)}
 """m/s² (rad/s): ten times what makers allow of the coarsest sensors, 0.2 g and 10 °/s."""
 WITHOUT_OFFSET = frozenset({"m/s²", "m/s^2", "m/s2", "g", "mg", "µg", "rad/s", "°/s", "deg/s", "dps", "°/h", "deg/h"})
-"""Units of readings that stand for what is measured: raw ones may have an offset of half the range."""
+"""Units of readings in physical terms: raw ones may have an offset of half the range."""
 MOST_ROWS = 10_000
 """Most rows of a recording, spread evenly, for the median size of the specific force."""
 TOO_QUIET = 1e-4

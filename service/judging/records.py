@@ -133,7 +133,7 @@ class SaidVerdict:
 
 
 def said(record: StoredSession | Receipt | UnitSummary) -> dict[str, Any]:
-    """The fields of a record with a verdict, and how that is said; a questioned session counts for nothing."""
+    """The fields of a record with its verdict in words; a questioned session counts for nothing."""
     known = record.reservations
     words = verdict_in_words(condition_of(record.verdict, is_reference=record.is_reference), known)
     if not isinstance(record, UnitSummary) and record.state is RecordState.QUESTIONED:

@@ -46,7 +46,7 @@ class KnownUnit:
     """Files of sessions that are not stored yet: hash and name by id."""
 
     def calibration(self, id: str) -> Calibration:
-        """The one in force of a session."""
+        """The calibration in force of a session."""
         if id in self.made:
             return self.made[id]
         if id not in self.read:

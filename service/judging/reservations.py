@@ -251,8 +251,9 @@ def reservations_of(session: Doubted) -> tuple[Reservation, ...]:
 
 
 def _of_findings(session: Doubted) -> Iterator[Reservation]:
-    """Record errors always, and causes that are large. What moved since earlier sessions is what the tolerances judge,
-    and what is in the model already, or was set aside before the fit, is taken care of."""
+    """The reservations of record errors always, and of large causes. A change since earlier sessions is judged by the
+    tolerances; a cause that is in the model already, or was set aside before the fit, is accounted for.
+    """
     out = {(ReadingOutlier.identifier, reading.sensor) for reading in session.yardstick.calibration.set_aside}
     for finding in session.findings:
         if all((finding.cause, sensor) in out for sensor in finding.sensors or ("",)):
@@ -317,7 +318,7 @@ def _of_models(session: Doubted) -> Iterator[Reservation]:
 
 
 def _of_structures(session: Doubted) -> Iterator[Reservation]:
-    """The one that speaks of the record, and else the largest."""
+    """The reservation of a pattern in the record, and else of the largest one."""
     record = [s for s in session.structures if s.of_record]
     if record:
         yield Reservation(Doubt.RECORD, unexplained(record, ""), CORRECT)

@@ -193,7 +193,7 @@ class Derivations(Queries):
         )
 
     def settled(self, unit: int, by_service: str) -> dict[Key, Moment]:
-        """The last session that a flag spoke of when a person resolved it, by matter and place."""
+        """The last session of each flag that a person resolved, by matter and place."""
         return self._settled(by_service, FlagRow.unit_id == unit)
 
     def settled_of_stand(self, stand: str, by_service: str) -> Moment | None:

@@ -40,8 +40,7 @@ def _learned(step: TemperatureCorrection) -> str:
 
 
 def laws_in_words(decisions: tuple[Decision, ...]) -> tuple[str, ...]:
-    """One sentence on what temperature was taken off of in a session, what it was worth most in first; none where it
-    was not."""
+    """One sentence on the corrections for temperature in a session, the largest first; none where there were none."""
     taken = [(decision, step) for decision in decisions if (step := decision.temperature_correction) is not None]
     taken.sort(key=lambda pair: -abs(pair[1].worth) / pair[0].tolerance)
     if not taken:
@@ -120,7 +119,7 @@ def _between(lowest: float, highest: float) -> str:
 MOST_SAID = 4
 """Parameters that a sentence lists."""
 CONSTANT = 0.05
-"""°C: a smaller range is said as one number."""
+"""Least range of temperature, °C: a smaller one is stated as one number."""
 
 
 def span_in_words(celsius: Array | None) -> str:

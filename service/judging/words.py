@@ -115,12 +115,12 @@ ALL_PASS = "Every parameter is within its tolerance by more than U; closest to i
 
 
 def verdict_in_words(condition: Condition, reservations: Reservations) -> str:
-    """A verdict as it is said wherever it stands: ``Fit, but the bias of A2 has one step: repeat the session``."""
+    """A verdict with its reservations: ``Fit, but the bias of A2 has one step: repeat the session``."""
     return say("{word}{but}", word=condition.word, but=but(reservations)) if reservations != () else condition.word
 
 
 def unit_in_words(unit: UnitSummary) -> str:
-    """The verdict of a unit's latest session, as it is said."""
+    """The verdict of a unit's latest session in words."""
     return verdict_in_words(condition_of(unit.verdict, is_reference=unit.is_reference), unit.reservations)
 
 

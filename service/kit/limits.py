@@ -52,7 +52,7 @@ class Limits:
     work: float = 600.0
     """Seconds that one piece of work in the background may take; the largest diagnosis takes tens of them."""
     free: int = 256 * MEBIBYTE
-    """Bytes that the disk of uploaded files keeps: a database on it needs room to close what is open."""
+    """Bytes that the disk of uploaded files keeps free: a database on it needs room to finish open transactions."""
 
     client: float = 10.0
     """Seconds that a client is waited for, beside what a slow line needs for its bytes."""

@@ -81,7 +81,7 @@ class Person:
     name: str
     """Name under the person's actions; empty where the person gives it in each request."""
     role: Role | None
-    """None of somebody who may only sign in."""
+    """Role; None for somebody who may only sign in."""
     token: str = ""
     """Label of the token that was shown; empty of a browser."""
     token_id: int | None = None

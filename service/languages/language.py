@@ -62,7 +62,9 @@ def of_environment(variables: Mapping[str, str]) -> Language:
 
 
 def preferred(header: str) -> Language:
-    """The first of our languages in Accept-Language, by its weights (RFC 9110, 12.5.4); English where none is."""
+    """The first language of the service in Accept-Language, by its weights (RFC 9110, 12.5.4); English where none
+    is.
+    """
     for tag in _by_weight(header):
         if tag == "*":
             return Language.ENGLISH

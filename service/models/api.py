@@ -112,7 +112,7 @@ class ModelDocument(ModelRevision):
 @answer
 @dataclass(frozen=True, kw_only=True)
 class ModelAndRecomputations(ModelDocument):
-    """A revision with what it brought."""
+    """A revision with its effects."""
 
     recomputations: tuple[Recomputation, ...]
     """Units whose sessions are computed again because of it: of what groups of sessions show."""
@@ -147,7 +147,7 @@ def withdraw_cause(id: Number, handling: Handling, reception: ReceptionOf, now: 
 
 @router.get("/{id}", responses=errors(404, 422))
 def read_model(id: Number, store: Reading) -> ModelAndRecomputations:
-    """One revision, with what it moved in the sessions that it concerns."""
+    """One revision, with its effects on the sessions that it concerns."""
     return ModelAndRecomputations(**_fields(Models(store).get(id)), recomputations=tuple(Recomputations(store).of(id)))
 
 

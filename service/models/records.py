@@ -87,9 +87,9 @@ class AcceptedFinding:
     alternatives: tuple[str, ...]
     sentence: str
     gain: Gain | None
-    """None for a group of sessions."""
+    """Gain of the finding; None for a group of sessions."""
     pooled: Pooled | None = None
-    """None for a single session: then each session fits the size."""
+    """Facts from a group; None for a single session: then each session fits the size."""
 
 
 @answer

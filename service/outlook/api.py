@@ -34,7 +34,7 @@ NOT_TEXT = re.compile("[\x00-\x09\x0b-\x1f\x7f]")
 ESCAPED = str.maketrans({"\\": r"\\", ";": r"\;", ",": r"\,", "\n": r"\n"})
 """Section 3.3.11."""
 LONGEST = 75
-"""Bytes of a line without its end (section 3.1); what is longer goes on in the next, which begins with a blank."""
+"""Bytes of a line without its end (section 3.1); a longer one continues in the next, which begins with a blank."""
 CONTINUES = 0b10
 """The highest two bits of a byte within a character of UTF-8."""
 

@@ -24,7 +24,7 @@ from service.units.store import Services, Units
 END_OF_TIME = datetime(9999, 1, 1, tzinfo=UTC)
 """A time after every break."""
 RULE = b"6"
-"""Version of what an outlook says of a history: those made by an earlier one are made again."""
+"""Version of the rules of outlooks: those made by an earlier one are made again."""
 AT_HAND = 32
 """Parameters whose prior is kept: those of several types. Units are worked out again type by type."""
 TypeHistories = dict[tuple[str, str], tuple[bytes, ...]]

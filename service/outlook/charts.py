@@ -258,7 +258,7 @@ def _breaks(services: "alt.NamedData") -> "alt.Chart":
 
 
 def _remarks(notes: "alt.NamedData") -> "alt.Chart":
-    """A mark at the upper edge; what it says is read by pointing at it, and in the list below the charts."""
+    """Marks of notes at the upper edge; their text is shown on pointing at one, and in the list below the charts."""
     chart: alt.Chart = (
         alt.Chart(notes)
         .mark_point(shape="triangle-down", filled=True, size=70, opacity=1, color="var(--second)")
@@ -357,8 +357,9 @@ def _short(value: float | None) -> float | None:
 
 
 def _span(tracks: Sequence[ParameterCourse], trends: Trends, events: Sequence[datetime]) -> list[str]:
-    """One stretch of time for all sensors, so that what happened together stands in line; with what happened since
-    their first session, a note of today among it."""
+    """One stretch of time for all sensors, so that simultaneous events stand in line; it includes events since their
+    first session, a note of today among them.
+    """
     dates = [p.at for track in tracks for p in track.points] + forecast_dates(tracks, trends)
     dates += [at for at in events if at > min(dates)]
     air = (max(dates) - min(dates)) * AIR or timedelta(days=1)

@@ -112,9 +112,9 @@ class FoundChange:
     kind: ChangeKind
     """`walk`: it moved at no steady rate."""
     after: datetime
-    """The last session before it, or the first of all."""
+    """Last session before it, or the first of all."""
     before: datetime
-    """The first session that shows it."""
+    """First session that shows it."""
     size: float
     """SI or relative, of an axis its length; of a drift a year, of aging the first year's."""
     sigma: float

@@ -35,7 +35,7 @@ def outlook_to_dicts(outlook: UnitOutlook) -> tuple[Json, Json]:
 
 
 def outlook_from_dicts(document: Json, drawn: Json | None = None) -> UnitOutlook:
-    """The outlook that was written; without its fans and its risk where what is drawn was left in the store."""
+    """The outlook from its documents; without its fans and its risk where ``drawn`` was left in the store."""
     if drawn is None:
         return STORED.read(UnitOutlook, document)
     trends = [trend | {"fan": fan} for trend, fan in zip(document["trends"], drawn["fans"], strict=True)]
@@ -317,7 +317,7 @@ class Populations(Queries):
     """Centre and spread of every parameter's rates, by type."""
 
     def put(self, unit_type: int, found: Sequence[Population], at: datetime) -> None:
-        """Rewrites what is known of a type."""
+        """Rewrites the populations of a type."""
         self._session.execute(delete(PopulationRow).where(PopulationRow.unit_type_id == unit_type))
         self._session.add_all(_row(unit_type, population, at) for population in found)
         self._session.flush()

@@ -1,6 +1,6 @@
 """The pages that explain the service.
 
-A word that stands in `docs/glossary.md` too means the same there, to the letter; a test holds the two together.
+A term that is in `docs/glossary.md` too has the same meaning there, to the letter; a test compares the two.
 """
 
 from collections.abc import Mapping
@@ -94,7 +94,7 @@ def _plain(value: Any) -> str:
 SCHEMAS = "#/components/schemas/"
 JSON = "application/json"
 WITHOUT = ("401", "403", "422")
-"""Answers that nearly every call may give; the head of the page tells of them once."""
+"""Answers that nearly every call may give; the head of the page explains them once."""
 
 
 @dataclass(frozen=True)
@@ -134,7 +134,7 @@ class CallHelp:
     """The least role that may; empty where nobody needs one."""
     fields: tuple[FieldHelp, ...]
     body: str
-    """Name of the schema of what is sent; empty where it is no JSON."""
+    """Name of the schema of the body; empty where it is no JSON."""
     body_kinds: tuple[str, ...]
     answers: tuple[Answer, ...]
 
@@ -236,7 +236,7 @@ def _kind(schema: Mapping[str, Any]) -> str:
 
 
 def _schema_of(schema: Mapping[str, Any]) -> str:
-    """The first schema that is named in another."""
+    """The first schema that another one refers to."""
     if "$ref" in schema:
         return str(schema["$ref"]).removeprefix(SCHEMAS)
     inner = [*schema.get("anyOf", ()), *schema.get("oneOf", ()), *schema.get("allOf", ()), schema.get("items", {})]
@@ -332,7 +332,7 @@ COUNTS = "It counts."
 
 @dataclass(frozen=True)
 class HelpPage:
-    """Everything the page of help shows, each as a word and what it means."""
+    """Contents of the page of help, each a term and its meaning."""
 
     when: tuple[tuple[str, str], ...]
     states: tuple[tuple[str, str], ...]
@@ -358,7 +358,7 @@ def show_help(request: Request) -> HTMLResponse:
 
 @router.get("/api-reference")
 def show_reference(request: Request) -> HTMLResponse:
-    """Every call of the API."""
+    """Shows every call of the API."""
     return render(request, "reference.html", reference_page(request.app.openapi()))
 
 

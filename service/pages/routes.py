@@ -99,7 +99,7 @@ def show_fleet(request: Request, store: ReadingFleet, now: Now, view: Annotated[
 
 
 def _worst_of(store: Store, unit: UnitSummary) -> tuple[HistoryPoint, ...]:
-    """The history of the parameter that a unit's verdict hangs on."""
+    """The history of the parameter that sets a unit's verdict."""
     if unit.worst_sensor is None or unit.worst_parameter is None:
         return ()
     wanted = HistoryQuery(parameter=unit.worst_parameter, sensor=unit.worst_sensor)
@@ -202,8 +202,9 @@ def take_uploads(
     desk: JobDeskOf,
     person: PersonOf,
 ) -> HTMLResponse:
-    """The form with the verdict of each file, or what is wrong with it; 422 when a file cannot be used. Large files
-    are worked on by jobs."""
+    """Shows the form with the verdict of each file, or its problems; 422 when a file cannot be used. Large files are
+    processed by jobs.
+    """
     tables = [file for file in files if is_own_layout(where(file.content), file.filename)]
     whole = [file for file in files if file not in tables]
     long = [file for file in whole if is_long(reception.storage, file, in_force().later)]

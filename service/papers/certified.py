@@ -121,7 +121,7 @@ class StatedSession:
     """The session in the file."""
     type_name: str
     reference: ReferenceSession | None
-    """None for a reference."""
+    """Reference of the session; None for a reference."""
     said: str
     """The verdict with its reservations."""
     finding: str

@@ -191,9 +191,9 @@ class Papers:
     """Every issue of a session's certificate."""
 
     certificates: tuple[SignedIssue, ...]
-    """The first one first; the last one holds."""
+    """Issues, the first one first; the last one holds."""
     is_current: bool
-    """Whether the last one states what is stored now; another number is due if not."""
+    """Whether the last one states the currently stored data; another number is due if not."""
     concerns: tuple[str, ...]
     """Reasons against using the last one, in words."""
 

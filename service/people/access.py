@@ -25,7 +25,7 @@ POST /sign-out
 GET /oidc/start
 GET /oidc/callback
 """
-"""Open without signing in."""
+"""Routes open without signing in."""
 
 VIEWER = f"""
 GET /

@@ -43,7 +43,7 @@ class SignInPage:
     next: str
     """Address of this service to which it leads."""
     wrong: str
-    """The last error; empty the first time."""
+    """Error of the last attempt; empty the first time."""
     provider: str
     """Name of the sign-in provider; empty where none is configured."""
 
@@ -54,7 +54,7 @@ class LinkPage:
 
     secret: str
     account: Account | None
-    """None where the first account is made."""
+    """Account of the link; None where the first account is made."""
     shortest: int
     """Characters of a password."""
 

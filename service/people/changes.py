@@ -308,7 +308,7 @@ def _first(store: Store, chosen: LinkForm, now: datetime) -> str:
 
 
 LONGEST = timedelta(days=366)
-"""Longest lifetime of a token: what is forgotten should end by itself."""
+"""Longest lifetime of a token: a forgotten one should end by itself."""
 
 
 OUTLIVES = "A token cannot make tokens or sign-in links, which would outlive it: sign in with a browser."

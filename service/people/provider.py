@@ -45,7 +45,7 @@ class Journey:
 
     @property
     def verifier(self) -> str:
-        """Sent with the code: nobody else can exchange it (RFC 7636)."""
+        """Secret sent with the code: nobody else can exchange it (RFC 7636)."""
         return self._part(b"verifier")
 
     @property

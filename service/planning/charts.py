@@ -101,7 +101,7 @@ def _spec(across: str) -> Json:
 READINESS_HEIGHT = 140
 """Pixels: six panels fit on a screen."""
 MINUTE = 60.0
-"""s."""
+"""Seconds in a minute."""
 
 
 def readiness_charts(found: Readiness, kinds: dict[str, str]) -> ChartSet | None:

@@ -152,7 +152,7 @@ class PlanQuestion(BaseModel):
 
 
 MINUTE = 60.0
-"""s."""
+"""Seconds in a minute."""
 
 
 class ReadyQuestion(BaseModel):

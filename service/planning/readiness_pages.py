@@ -1,4 +1,4 @@
-"""The pages before and during a measurement: ready or not, and what is still missing."""
+"""The pages before and during a measurement: ready or not, and the missing positions."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -140,7 +140,7 @@ def _changes(found: Readiness, kinds: dict[str, str]) -> tuple[tuple[str, ...], 
 
 @dataclass(frozen=True)
 class MissingPage:
-    """Everything the page of what is missing shows; before a file was sent only its form."""
+    """Contents of the page of missing positions; before a file was sent only its form."""
 
     positions: int | None
     runs: str

@@ -21,7 +21,7 @@ MOST = 12
 
 
 def missing_in_words(found: Missing) -> tuple[str, ...]:
-    """A sentence on progress, then one a run or a line a direction, then what is open until then."""
+    """A sentence on progress, then one a run or a line a direction, then the parameters that are open until then."""
     if found.is_complete:
         return (say("Complete: {done} positions, and every parameter is observed.", done=found.done),)
     done = found.done
@@ -138,7 +138,7 @@ def headline(plan: Plan) -> str:
 
 
 MINUTE = 60.0
-"""s."""
+"""Seconds in a minute."""
 FEW = 3
 """Sensors that are named; the others are counted."""
 

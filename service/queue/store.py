@@ -55,7 +55,7 @@ class WorkQueue(Queries):
         self.insert_all_once(WorkRow, [self._new(key, now) for key in keys])
 
     def enqueue_again(self, key: str, now: datetime) -> None:
-        """Requests work; what is in progress is repeated, and failed work is attempted at once."""
+        """Requests work; work in progress is repeated, and failed work is attempted at once."""
         new = self._upsert(WorkRow).values(**self._new(key, now))
         reset = {
             name: case((_HAS_FAILED, value), else_=getattr(WorkRow, name)) for name, value in RETRY_AT_ONCE.items()

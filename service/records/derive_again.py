@@ -58,7 +58,7 @@ class Deriving:
     coverage_factor: float
     at: datetime
     at_once: int | None = AT_ONCE
-    """None where all are judged now."""
+    """Most sessions judged at once; None where all are judged now."""
     outlook: bool = True
     """Whether the outlook is asked for: of many files in a row the last one brings it."""
     is_dated_later: bool = False
@@ -92,10 +92,11 @@ def derive_again(
     known: KnownUnit | None = None,
     foreseen: Foreseen = NOTHING_FORESEEN,
 ) -> Derived:
-    """Derives what is known of a unit after its records changed from a date on; ``touched`` are judged in any case.
+    """Makes all derived results of a unit again after its records changed from a date on; ``touched`` are judged in any
+    case.
 
-    ``known``: what this transaction has read of the unit, where nothing of it changed since. ``foreseen``: what was
-    worked out before it; the rest is left to `service.records.follow`.
+    ``known``: records of the unit that this transaction has read, where none of them changed since. ``foreseen``:
+    results computed before it; the rest is left to `service.records.follow`.
     """
     known = known or known_unit(store, Units(store).hold(serial))
     places = places_of(known)

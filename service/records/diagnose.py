@@ -71,7 +71,7 @@ def task_of(store: Store, id: str) -> DiagnosisTask:
 def diagnose(storage: Storage, id: str, now: datetime, coverage_factor: float = COVERAGE) -> StoredDiagnosis:
     """The diagnosis of a session: the stored one, or a new one that is stored.
 
-    Where what it looks at changes meanwhile it is made anew.
+    Where its input changes meanwhile it is made anew.
     """
     context = Deriving(storage.files, coverage_factor, now)
     while True:

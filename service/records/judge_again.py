@@ -88,8 +88,9 @@ def placed(
 ) -> tuple[Place, ...]:
     """Every accepted session with its reference, in order of time.
 
-    ``chosen`` are the sessions that engineers chose, oldest choice first; ``is_blind`` says of a session whether it
-    gives no uncertainty that others could be judged with; ``enough`` sessions tell a law over temperature.
+    ``chosen`` are the sessions that engineers chose, oldest choice first; ``is_blind`` tells whether a session gives no
+    uncertainty that others could be judged with; ``enough`` is the number of sessions from which on a law over
+    temperature is estimated.
     """
     ordered = sorted(sessions, key=_moment)
     groups: dict[Group, list[Counted]] = {}
@@ -156,7 +157,7 @@ def _since(at: datetime, breaks: Sequence[datetime]) -> datetime | None:
 
 
 def _reference(group: Sequence[Counted], rank: dict[str, int], is_blind: Callable[[Counted], bool]) -> Counted | None:
-    """The one chosen last, or the first that gives an uncertainty."""
+    """The session chosen last, or the first that gives an uncertainty."""
     chosen = max((s for s in group if s.id in rank), key=lambda s: rank[s.id], default=None)
     if chosen is not None:
         return chosen
@@ -222,7 +223,7 @@ def judging(
 
 
 def judged(known: KnownUnit, rules: Judging, places: Sequence[Place]) -> Foreseen:
-    """The numerical part, on what is stored."""
+    """The judgements of sessions at their places, computed from stored results."""
     against = [p.reference for p in places if p.reference is not None]
     learned = {session.id for p in places for session in p.learned}
     known.read_all([*(p.session.id for p in places), *(session.id for session in against), *learned])

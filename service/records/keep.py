@@ -43,7 +43,7 @@ def made(calibration: Calibration) -> MadeCalibration:
 
 
 def keep(store: Store, unit: int, new: Sequence[tuple[StoredSession, MadeCalibration]], at: datetime) -> None:
-    """The calibrations and the parameters of the history; what is decided of them is derived."""
+    """Stores the calibrations and the parameters of the history; decisions on them are derived."""
     Calibrations(store).add([(record, calibrated.packed) for record, calibrated in new], at)
     History(store).add(unit, [(record, calibrated.values) for record, calibrated in new])
 

@@ -108,7 +108,7 @@ AHEAD = 4
 PATIENCE = "30s"
 """Time to wait for a scheduler, and for its first worker."""
 QUIET = {"dashboard": False, "dashboard_address": "127.0.0.1:0"}
-"""Dask's own pages need what is not installed; its figures lie on a port of this machine."""
+"""Dask's own pages need packages that are not installed; its figures are on a port of this machine."""
 PROFILING = "distributed.worker.profile.enabled"
 """Dask's setting that samples the work of its workers every hundredth of a second and keeps it for an hour: most of a
 gigabyte each.

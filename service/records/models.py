@@ -216,7 +216,7 @@ def evidence_of(finding: GroupFinding, shown: GroupShown) -> AcceptedFinding:
 
 
 def term_evidence(term: EmpiricalTerm, shown: GroupShown) -> AcceptedFinding:
-    """A learned term as a revision keeps it: its evidence is what it gains on the sessions that took no part."""
+    """A learned term as a revision keeps it: its evidence is its gain on the sessions without part in the fit."""
     return AcceptedFinding(
         p_value=min(1.0, exp(-max(term.gain, 0.0))),
         strength=hypot(*(a / s for a, s in zip(term.amplitude, term.sigma, strict=True))),

@@ -43,7 +43,7 @@ class _State:
     next: str
     """Next calibration in words."""
     flags: Mapping[tuple[str, str], Flag]
-    """Open ones."""
+    """Open flags by matter and place."""
 
     @property
     def counted(self) -> tuple[StoredSession, ...]:

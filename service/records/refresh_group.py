@@ -36,7 +36,7 @@ from service.storage.queries import Store
 from service.units.store import Services
 
 RULE = b"4"
-"""Version of what an answer says of its sessions: those made by an earlier one are made again."""
+"""Version of the rules of joint diagnoses: those made by an earlier one are made again."""
 
 
 def members_of(store: Store, group: Group) -> Members:
@@ -52,7 +52,7 @@ def digest(members: Members) -> str:
 
 
 def current(store: Store, group: Group) -> GroupAnswer | None:
-    """The stored answer of a group, if it rests on what is known now; one that this version failed at holds too."""
+    """The stored answer of a group, if it rests on the current records; one that this version failed at holds too."""
     known = Groups(store).get(group)
     if known is None or known.is_of_another(VERSION):
         return None

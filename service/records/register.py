@@ -1,7 +1,7 @@
 """Flow: units are entered in the register, move, are retired and put back into use; every step is kept.
 
-A unit may be entered before its first session: its type is then known by name only, and the first session says what it
-has. Nothing of a list is stored where anything in it is wrong.
+A unit may be entered before its first session: its type is then known by name only, and the first session states its
+sensors. No entry of a list is stored where any of them is wrong.
 """
 
 from collections.abc import Sequence
@@ -57,8 +57,7 @@ class Entered:
 
 
 def enter(storage: Storage, entries: Sequence[NewEntry], entering: Entering) -> Entered:
-    """Enters units, or changes what the register says of them; RefusedError with every problem by its row, then
-    nothing is stored."""
+    """Enters units, or changes their entries; RefusedError with every problem by its row, then nothing is stored."""
     with storage.database.writing() as store:
         serials = [entry.serial for entry in entries]
         known, measured = Register(store).find(serials), Register(store).measured(serials)

@@ -148,7 +148,7 @@ def read_entry(serial: Serial, store: Reading) -> RegisterEntry:
 
 @router.put("/units/{serial:path}/register", responses=errors(400, 422))
 def put_entry(serial: Serial, new: NewEntrySchema, storage: StorageOf, now: Now, person: PersonOf) -> RegisterEntry:
-    """Enter the unit, before or after its first session, or change what the register says of it."""
+    """Enter the unit, before or after its first session, or change its entry in the register."""
     stated = new.model_dump(exclude={"by"})
     entry = NewEntry(serial, **{name: text if text is None else text.strip() for name, text in stated.items()})
     enter(storage, (entry,), Entering(person.signs(new.by), now))

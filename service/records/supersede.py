@@ -58,8 +58,9 @@ def supersede(
 
 
 def settled_by(storage: Storage, replaced: str, successor: str) -> str | None:
-    """The one doubt that a questioned session is in, where it is that it holds the readings of the session which it
-    supersedes now."""
+    """The only doubt about a questioned session, where it is that it holds the readings of the session which it
+    supersedes now.
+    """
     with storage.database.reading() as store:
         session = Sessions(store).get(successor)
     if session.state is not RecordState.QUESTIONED:

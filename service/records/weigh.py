@@ -49,7 +49,7 @@ class Weighing:
     verdict: Verdict | None
     """Verdict in force; None for a reference, or where nothing was judged."""
     basis: Basis | None
-    """None where there is nothing to judge by."""
+    """Basis of the verdict; None where there is nothing to judge by."""
     tolerances: dict[tuple[str, str], float]
     known: frozenset[tuple[str, str]]
     """Causes in the model in force, with the sensor or an empty name."""
@@ -153,7 +153,7 @@ class WeighedAgain:
     id: str
     weighable: Weighable
     reservations: tuple[Reservation, ...] | None
-    """None where there is nothing to weigh."""
+    """New reservations; None where there is nothing to weigh."""
 
 
 def weighable(store: Store, session: Counted) -> Weighable:

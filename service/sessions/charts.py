@@ -53,7 +53,7 @@ CONFIG: Json = {
 
 @dataclass(frozen=True)
 class Panel:
-    """One small chart: its heading, what it shows in words, and its data."""
+    """One small chart: its heading, its description in words, and its data."""
 
     title: str
     description: str

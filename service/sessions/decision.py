@@ -32,7 +32,7 @@ class Opening(StrEnum):
 
     FIRST = "first"
     SERVICE = "service"
-    """The first after one."""
+    """The first session after a service."""
     CHOSEN = "chosen"
     """Chosen by an engineer."""
 
@@ -77,7 +77,7 @@ def steps_in(decisions: tuple[Decision, ...]) -> Steps:
 
 
 def worst_of(decisions: tuple[Decision, ...]) -> Decision | None:
-    """The decision that a session's verdict hangs on: the worst verdict, and of those the least margin."""
+    """The decision that sets a session's verdict: the worst verdict, and of those the least margin."""
     return max(decisions, key=badness, default=None)
 
 

@@ -54,7 +54,7 @@ class Doubt:
     slip: str
     """Probable cause."""
     correction: FileCorrection | None = None
-    """None where no factor and no exchange puts it right."""
+    """Correction of the file; None where no factor and no exchange puts it right."""
     stands_for: str | None = None
     """The session that this one counts twice with, and could stand for."""
 

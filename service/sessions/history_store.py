@@ -193,8 +193,9 @@ class HistoryQuery:
     raw: bool = False
     """Whether what the whole block did is left in."""
     noise: bool | None = False
-    """Whether the terms of noise are wanted, not what is judged; None for both. One that is asked for by its name
-    always is."""
+    """Whether the terms of noise are wanted instead of the judged parameters; None for both. A parameter that is
+    requested by its name is always included.
+    """
     kind: str | None = None
     """Kind of the sensors."""
 

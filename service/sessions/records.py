@@ -57,7 +57,7 @@ class _StoredSession:
     """A stored session without its marks."""
 
     id: str
-    """The first 20 digits of the content's SHA-256."""
+    """Id of the session: the first 20 digits of the content's SHA-256."""
     unit: str
     """Serial number of the unit."""
     sha256: str
@@ -146,7 +146,7 @@ class _Receipt:
     reason: str
     """Reason for the verdict, in one sentence."""
     created: bool
-    """False when the same bytes were already stored."""
+    """Whether it is new; false when the same bytes were already stored."""
     is_reference: bool
     """Whether later sessions are judged against this one; then its own verdict is `undecidable`."""
     reservations: Hidden[Reservations] = None
@@ -169,9 +169,9 @@ class SessionOrder(StrEnum):
     MEASURED = "measured"
     """The newest first."""
     UPLOADED = "uploaded"
-    """The last that came first."""
+    """The latest upload first."""
     VERDICT = "verdict"
-    """Worst first."""
+    """The worst verdict first."""
     UNIT = "unit"
 
 

@@ -133,7 +133,7 @@ class SessionReportAnswer(SaidSession):
     """One stored session with its decisions."""
 
     decisions: tuple[DecisionSchema, ...]
-    """Every judged parameter, sensor after sensor."""
+    """Decisions on every judged parameter, sensor after sensor."""
     common_motion: tuple[CommonMotionSchema, ...]
     """Motions common to all sensors; empty for a reference and for sessions judged before they were kept."""
     stand_certificate_expired: bool

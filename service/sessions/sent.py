@@ -51,7 +51,7 @@ class Received(Stated):
     sha256: str
     """SHA-256 of the content."""
     filename: str
-    """The last part of the sender's name, printable; only ever shown, never used as a path."""
+    """Last part of the sender's name for the file, printable; only ever shown, never used as a path."""
     at: datetime
     who: str
     """Person who sent it."""

@@ -67,6 +67,6 @@ def state_change(row: RecordStateRow) -> StateChange:
 
 
 IS_ACCEPTED = SessionRow.state == RecordState.ACCEPTED
-"""Sessions that tell of their unit."""
+"""Condition of sessions that count for their unit."""
 IS_BREAK = ServiceRow.state == RecordState.ACCEPTED
 """Services that begin an epoch."""

@@ -116,7 +116,7 @@ class Sessions(Queries):
         self.insert_many(SessionRow, ({**values, **more},))
 
     def mark(self, id: str, **said: bool | str | None) -> None:
-        """Writes what is said of a session."""
+        """Writes marks and statements on a session."""
         self._session.execute(update(SessionRow).where(SessionRow.id == id).values(**said))
         self._session.expire_all()
 
@@ -263,7 +263,7 @@ def epoch_bounds(
 
 
 def worst_columns(worst: Decision | None) -> dict[str, str | float | None]:
-    """The decision that a verdict hangs on, as the store keeps it beside the verdict."""
+    """The columns of the decision that sets a verdict, stored beside the verdict."""
     if worst is None:
         return {"worst_sensor": None, "worst_parameter": None, "margin": None}
     return {"worst_sensor": worst.sensor, "worst_parameter": worst.parameter, "margin": worst.margin}
@@ -351,7 +351,7 @@ SESSIONS: Listing[SessionQuery] = Listing(
 
 
 def reservations_to_list(reservations: Sequence[Reservation]) -> list[Json] | None:
-    """Every reservation, or None where there are none."""
+    """The reservations as they are stored, or None where there are none."""
     return STORED.written(list(reservations)) or None
 
 

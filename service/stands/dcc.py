@@ -99,7 +99,7 @@ def _day(text: str | None) -> date | None:
 
 
 def _stated_end(root: Element, issued: date) -> date | None:
-    """The last day of validity, of a statement with a day or a period; the earliest of several."""
+    """The last day of validity, by a statement with a day or a period; the earliest of several."""
     ends = []
     for statement in root.iterfind(".//{*}statement"):
         names = [name.text or "" for name in statement.iterfind("{*}name/{*}content")]
@@ -162,7 +162,7 @@ def _sigma(quantity: Element) -> float:
 
 
 def _number(quantity: Element, paths: tuple[str, ...]) -> float | None:
-    """The first there is, finite."""
+    """The first number found, if it is finite."""
     text = next((found for path in paths if (found := quantity.findtext(path))), "nan")
     try:
         return value if isfinite(value := float(text)) else None

@@ -48,7 +48,7 @@ class StandUse:
 
     stand: str
     sessions: int
-    """Accepted ones."""
+    """Number of accepted sessions."""
     units: int
     """Units measured in them."""
     last_at: datetime | None
@@ -79,7 +79,7 @@ class StandEvidence:
     p_value: float
     """Chance of as much when nothing shifted, all dates and stands considered."""
     units: int
-    """Units that tell of it."""
+    """Number of units with evidence on it."""
     agreeing: int
     """Units among them that show the shift."""
     has_shifted: bool
@@ -113,13 +113,13 @@ class StandCondition:
     reason: str
     """Reason in one sentence."""
     evidence: tuple[StandEvidence, ...]
-    """Most evident, of every quantity that units tell of."""
+    """Most evident, for every quantity on which there is evidence."""
     shifts: tuple[StandEvidence, ...]
     """Every shift, also one that was taken back; oldest first."""
     seating: tuple[StandSeating, ...]
     """Scatter of mountings, of every quantity."""
     unreadable: tuple[str, ...]
-    """Sessions left out: what is stored of them cannot be used."""
+    """Sessions left out: their stored results cannot be used."""
 
 
 @dataclass(frozen=True)
@@ -145,7 +145,7 @@ class StandCertificate:
     issued_on: date
     """Day from which it holds for the stand."""
     valid_until: date
-    """The last day on which it holds."""
+    """Last day on which it holds."""
 
 
 @answer

@@ -45,7 +45,7 @@ class Stands(Queries):
         return tuple(self._session.scalars(query.order_by(UnitRow.serial)))
 
     def hold(self, stand: str) -> None:
-        """Held until the transaction ends: what is derived of it is written by one after another."""
+        """Holds a stand until the transaction ends, so that results derived of it are written one after another."""
         self._session.scalar(select(StandRow.id).where(StandRow.name == stand).with_for_update())
 
     def every(self) -> tuple[KnownStand, ...]:
@@ -67,7 +67,7 @@ class Stands(Queries):
         return tuple(STORED.read(StandCondition, doc) for doc in self._session.scalars(query.order_by(StandRow.name)))
 
     def put_conditions(self, found: Sequence[StandCondition], at: datetime) -> None:
-        """Rewrites what is known of all stands."""
+        """Rewrites the conditions of all stands."""
         keys = {name: key for key, name in self._session.execute(select(StandRow.id, StandRow.name))}
         known = [keys[condition.stand] for condition in found]
         self._session.execute(delete(StandConditionRow).where(StandConditionRow.stand_id.not_in(known)))
@@ -164,7 +164,7 @@ class StandCertificates(Queries):
         return tuple(self.with_errors(stand))
 
     def with_errors(self, stand: str) -> dict[StandCertificate, tuple[StandError, ...]]:
-        """The same, each with what it states of the stand's errors: nothing where it was recorded by hand."""
+        """The certificates of a stand, each with the stated errors of the stand: none where it was recorded by hand."""
         query = (
             select(StandCertificateRow)
             .join(StandRow, StandRow.id == StandCertificateRow.stand_id)

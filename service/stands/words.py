@@ -96,7 +96,7 @@ NOT_STATED = StandWord("undecidable", "Usable, traceability not stated", "Record
 CHECK = StandWord("conditional-fail", "Check before use", "Check stand and fixture before a unit is mounted.")
 EXPIRED_TODAY = StandWord("fail", "Not traceable today", "Have the stand calibrated, or record its new certificate.")
 WORDS = (EXPIRED_TODAY, CHECK, NOT_STATED, SOON_OVER, READY)
-"""Worst first."""
+"""Words, worst first."""
 
 
 ERRORS = {

@@ -1,6 +1,6 @@
 """The database: the only place that commits. One transaction a request.
 
-`service.kit.lock_order` defines the order of locks, and what is not done while one is held.
+`service.kit.lock_order` defines the order of locks, and the work that is not done while one is held.
 """
 
 from collections.abc import Iterator

@@ -46,7 +46,7 @@ def whole_file(files: Files, digest: str, places: Sequence[str]) -> Path:
 
 
 def drop_waiting(files: Files, place: str) -> None:
-    """Removes what is left of it; an invalid name is none of ours."""
+    """Removes what is left of a waiting file; an invalid name is ignored."""
     if not is_name(place):
         return
     with disk_faults():

@@ -113,9 +113,9 @@ class VerdictChange:
     after: Verdict
     """Verdict under the other tolerances."""
     sensor: str
-    """The sensor that it hangs on; empty where nothing would be judged."""
+    """Sensor that sets it; empty where nothing would be judged."""
     parameter: str
-    """The parameter that it hangs on."""
+    """Parameter that sets it."""
     reason: str
     """Reason for the other verdict, in one sentence."""
 

@@ -55,7 +55,7 @@ class UnitTypes(Queries):
         return bool(self._session.scalars(named.values(**block).returning(UnitTypeRow.id)).all())
 
     def _set_first(self, unit_type: UnitType) -> None:
-        """The first tolerances of a type that only had a name, by which nothing was judged."""
+        """Sets the first tolerances of a type that only had a name, by which nothing was judged."""
         first = self._session.get_one(ToleranceRow, (self._row(unit_type.name).id, 1))
         gyro = unit_type.gyro_tolerances
         first.tolerances, first.gyro_tolerances = asdict(unit_type.tolerances), None if gyro is None else asdict(gyro)

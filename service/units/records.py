@@ -28,7 +28,7 @@ class Service:
     sensor: str = ""
     """The sensor that it concerns; empty for the whole unit."""
     state: RecordState = RecordState.ACCEPTED
-    """One that was withdrawn is no break."""
+    """State of the service; a withdrawn one is no break."""
 
 
 @dataclass(frozen=True)

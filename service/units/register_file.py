@@ -16,7 +16,7 @@ COLUMNS = ("serial", "unit_type", "owner", "location", "custodian", "note")
 LEFT = ("retired_on",)
 """Columns of an export that an import leaves as they are."""
 MOST_ROWS = 2_000
-"""More would hold up everybody who writes."""
+"""Most rows of a table; more would hold up everybody who writes."""
 LONGEST = {"note": 2000}
 SHORT = 200
 """Characters of any other field."""

@@ -68,7 +68,7 @@ class Attachments(Queries):
     """Attachments by unit and session; a row is written once."""
 
     def add(self, unit: int, new: NewAttachment) -> int:
-        """Stores what is known of an attached file and returns its number."""
+        """Stores the description of an attached file and returns its number."""
         values = dict(vars(new))
         row = AttachmentRow(unit_id=unit, session_id=values.pop("session"), **values)
         self._session.add(row)

@@ -225,7 +225,7 @@ class Register(Queries):
         return frozenset(self._session.scalars(select(UnitRow.serial).where(UnitRow.serial.in_(serials), HAS_SESSION)))
 
     def put(self, unit: int, new: NewEntry, now: datetime) -> None:
-        """Writes what is stated of a unit; from now on it is in the register."""
+        """Writes the entry of a unit; from now on it is in the register."""
         self._write(unit, new.stated)
         entered = update(UnitRow).where(UnitRow.id == unit, UnitRow.registered_at.is_(None))
         self._session.execute(entered.values(registered_at=now))

@@ -186,7 +186,7 @@ LaterOf = Annotated[Later, Depends(_later)]
 
 
 class LayoutColumn(BaseModel):
-    """One column as it stands in the file."""
+    """One column as in the file."""
 
     heading: str = Field(description="As it stands, joined where there are two rows of headings.")
     cells: list[str] = Field(description="The first ones.")

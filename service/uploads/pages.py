@@ -38,7 +38,7 @@ class FileOutcome:
     receipt: Receipt | None = None
     problems: tuple[Problem, ...] = ()
     diagnosis: DiagnosisLine | None = None
-    """None for a refused file."""
+    """Diagnosis in one line; None for a refused file."""
     pending: bool = False
     """Whether the diagnosis is being made."""
     is_table: bool = False

@@ -1,4 +1,4 @@
-"""Preview of a table of custom layout: its mapping, what is missing, and its first rows."""
+"""Preview of a table of custom layout: its mapping, its missing facts, and its first rows."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -215,7 +215,7 @@ def _hint(name: str, document: Json) -> str:
 
 
 def _example_sheet(sheet: Worksheet, style: Style, document: Json) -> None:
-    """The first rows filled in, with example values next to them; ignored by an upload."""
+    """Writes a sheet with the first rows filled in, and example values next to them; ignored by an upload."""
     columns = _columns(document)
     _headings(sheet, style, document, list(columns))
     sheet.set_column(0, len(columns) + 2, 14)

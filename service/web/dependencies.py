@@ -48,7 +48,7 @@ def _language(request: Request) -> Language:
 
 
 LanguageOf = Annotated[Language, Depends(_language)]
-"""Language of what is made for people."""
+"""Language of texts for people."""
 
 
 def limited(request: Request, limit: int, *, is_form: bool) -> Request:

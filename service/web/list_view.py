@@ -27,7 +27,7 @@ def one_of(known: Collection[str]) -> AfterValidator:
 
 
 def address_of(path: str, asked: Mapping[str, object]) -> str:
-    """A path with what is asked of it; empty parts are left out."""
+    """The address of a path with its query; empty parts are left out."""
     kept = {name: value for name, value in asked.items() if value}
     return f"{path}?{urlencode(kept)}" if kept else path
 

@@ -27,7 +27,7 @@ from service.kit.measures import (
 )
 
 PER_HOUR = 3600.0
-"""s."""
+"""Seconds in an hour."""
 MICRO_G = 1e6 / STANDARD_GRAVITY
 """Micro-g in one m/s²."""
 AMPLITUDE_MEASURES = {
@@ -124,8 +124,9 @@ def amplitudes_of(finding: Sized) -> Iterator[str]:
 
 
 def _size(cause: str, si_unit: str, value: float, expanded: float) -> str:
-    """``12.3 ± 1.4 µg``; what is known far better than its own measure shows has its ± in the finer one:
-    ``42.66433° ± 1.2 arcsec``."""
+    """The size with its uncertainty, ``12.3 ± 1.4 µg``; an uncertainty far below the measure of the size has its ± in
+    the finer one: ``42.66433° ± 1.2 arcsec``.
+    """
     largest = max(abs(x) if isfinite(x) else 0.0 for x in (value, expanded))
     measure, finer = amplitude_measure(cause, si_unit, largest), amplitude_measure(cause, si_unit, expanded)
     if measure == finer or not isfinite(expanded) or expanded * measure.factor >= FINE:

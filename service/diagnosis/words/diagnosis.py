@@ -113,7 +113,7 @@ def _kinds(answer: DiagnosisAnswer) -> set[str]:
 
 
 def _named(findings: Sequence[Finding]) -> str:
-    """The first findings; two that are one choice are named once."""
+    """The first findings in words; two that are one choice are named once."""
     said = tuple(dict.fromkeys(what_is_wrong(finding, findings) for finding in findings))
     more = len(said) - MOST_FINDINGS
     return joined(" ", said[:MOST_FINDINGS]) + (say(" And {number} more.", number=more) if more > 0 else "")
@@ -138,7 +138,7 @@ def fault_of_the_program(session: str) -> str:
 
 
 def headline(answer: DiagnosisAnswer) -> str:
-    """The first cause or the choice that cannot be made; without one what the diagnosis came to."""
+    """The first cause or the choice that cannot be made; without one the result of the diagnosis."""
     if answer.findings:
         return what_is_wrong(weighty_first(answer.findings)[0], answer.findings)
     if answer.structures:

@@ -288,7 +288,7 @@ def what_to_do_about(structures: Sequence[Structure]) -> str:
 
 
 def leading(structures: Sequence[Structure]) -> Structure:
-    """The one that is named first."""
+    """The pattern that is named first."""
     return next((s for s in structures if s.of_record), structures[0])
 
 

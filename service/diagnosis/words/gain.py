@@ -11,7 +11,7 @@ from estimator.message import joined, say
 from service.kit.measures import THIN, decimals, deviation_measure, number
 
 NAMED = 3
-"""Sensors that are named; of the others it is said how many they are."""
+"""Most sensors that are named; of the others only the number is given."""
 SHARES = (
     (0.22, 0.28, "of {sensor} falls to a quarter: {before} → {after}"),
     (0.30, 0.37, "of {sensor} falls to a third: {before} → {after}"),

@@ -79,7 +79,9 @@ def _start(day_text: str, clock_text: str) -> str:
 
 
 def _offset(zone: str, text: str) -> str:
-    """``+05:30``; what follows a minus sign may be when it ended, unless it is said to be a zone."""
+    """The offset of a zone: ``+05:30``. A part after a minus sign may be the end of the session, unless it is named as
+    a zone.
+    """
     if not zone or (zone[0] != "+" and not ZONED.search(text)):
         return "Z"
     digits = re.sub(r"\D", "", zone)

@@ -28,11 +28,11 @@ NUMBERED = re.compile(r"^(?P<word>\D*?)[ _.\-№#]*(?P<place>\d{1,3}|[xyzXYZ])$"
 
 @dataclass(frozen=True)
 class SeenColumn:
-    """One column as it stands in the file."""
+    """One column as in the file."""
 
     heading: str
     cells: Sequence[str]
-    """The first cells, as text."""
+    """First cells, as text."""
     numeric: bool
     """Whether most of its cells are numbers."""
     empty: bool

@@ -112,7 +112,7 @@ def _trend(known: Histories, i: int, found: Outlook) -> ParameterTrend:
 
 
 def _since(found: Outlook, dates: tuple[datetime, ...]) -> datetime:
-    """The first session that the rate in force goes through."""
+    """The date of the first session under the rate in force."""
     drift = found.drift
     return dates[max([*found.steps, 0 if drift is None else max(drift.gap - 1, 0)])]
 

@@ -118,7 +118,7 @@ class Left:
 
 NOTHING_EXPLAINED: dict[Place, Left] = {}
 WORTH_TELLING = 0.1
-"""Part of the tolerance from which on it is said that a diagnosis explains it."""
+"""Least share of the tolerance at which the part that a diagnosis explains is mentioned."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -221,11 +221,11 @@ def _point(row: ChangeRow | ReferenceRow, measured: Measured, dof: float | None,
 
 
 def _as_measured(rows: Sequence[ChangeRow], reference: ReferenceRow) -> tuple[Measured, ...] | None:
-    """The reference's change and those of the rows, nothing taken off, where the sessions span temperature; None of a
-    parameter that does not follow it.
+    """The reference's change and those of the rows, without corrections, where the sessions span temperature; None for
+    a parameter that does not follow it.
 
-    What all sensors have in common is what a majority agrees on: of sensors that each follow the temperature by a law
-    of their own it is another one at each temperature, and what is left of them follows none.
+    The common part of all sensors is the one on which a majority agrees: where each sensor follows the temperature by a
+    law of its own it differs at each temperature, and the rest follows none.
     """
     warm = np.array([reference.temperature, *(row.temperature for row in rows)], dtype=float)
     first = reference.u.get((rows[-1].sensor, rows[-1].parameter))

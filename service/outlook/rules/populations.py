@@ -86,7 +86,7 @@ class Standout:
 
 
 def fleet_standouts(store: Store, most: int) -> tuple[Standout, ...]:
-    """The first of the whole fleet, in one query."""
+    """The units and lots furthest out in the whole fleet, in one query."""
     return standouts(Populations(store).furthest(most))[:most]
 
 

@@ -53,7 +53,7 @@ class DueLine:
     usable: bool
     """Whether it may be used now."""
     answer: Use
-    """The same, told from a reservation and from what is not known yet."""
+    """Answer, which distinguishes a reservation and a pending result."""
     use: str
     """The answer in words, with the action."""
     why: str
@@ -61,7 +61,9 @@ class DueLine:
 
 
 def due_counts(dates: Iterable[datetime | None], now: datetime) -> tuple[DueCount, ...]:
-    """Every unit once: what is overdue, this month and the next ones, later ones where something is due, no date."""
+    """The number of units in each period: overdue, this month and the next ones, later ones where something is due, no
+    date.
+    """
     found = Counter(period(due, now) for due in dates)
     months, start = [], month_begin(now)
     for _ in range(MONTHS):

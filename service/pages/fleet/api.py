@@ -46,7 +46,7 @@ FORM = (
     "`Accept` chooses, else it is JSON."
 )
 REPORTS = {**FORMS, XLSX: "xlsx", PDF: "pdf"}
-"""Tables, and what is of the whole fleet."""
+"""Forms of reports: tables, and those of the whole fleet."""
 
 
 @router.get("", responses=errors())

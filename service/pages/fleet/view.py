@@ -63,7 +63,9 @@ class FleetView(ListView):
         )
 
     def earlier(self, entry: str, *, others: bool) -> str:
-        """The first page is read from its beginning, so that nothing new is missed before it."""
+        """The address of the previous page. The first page is read from its beginning, so that no new entry is missed
+        before it.
+        """
         if self.page <= 2 or not entry:
             return "" if self.page == 1 else self.first()
         return self.url(page=self.page - 1, before=entry, after="")

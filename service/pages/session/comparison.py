@@ -191,7 +191,7 @@ class ParameterChangeRow:
     used: Margin | None
     """Share of the tolerance that the change uses, U included."""
     condition: Condition | None
-    """None where the parameter is not judged, or not known of both."""
+    """Condition of the change; None where the parameter is not judged, or not known of both."""
 
 
 @dataclass(frozen=True)

@@ -71,7 +71,7 @@ class ParameterCell:
     tolerance: str
     probability: str
     condition: Condition | None
-    """None where there is no decision."""
+    """Condition of the decision; None where there is none."""
 
 
 @dataclass(frozen=True)

@@ -63,9 +63,9 @@ class StandLine:
 
     use: StandUse
     condition: StandCondition | None
-    """None where no session tells of it."""
+    """Condition by its units; None where no session shows it."""
     certificates: tuple[StandCertificate, ...]
-    """Oldest issue first."""
+    """Certificates, oldest issue first."""
     flags: int
     """Number of open flags that find it at fault."""
     is_pending: bool
@@ -82,7 +82,7 @@ class StandReport:
     """Units whose latest session was measured on it, the latest first."""
     uses: Mapping[str, Usable]
     sessions: tuple[StoredSession, ...]
-    """Newest first."""
+    """Sessions, newest first."""
     models: tuple[ModelRevision, ...]
     """Causes that engineers accepted into its model, and that hold."""
     errors: tuple[StandError, ...] = ()
@@ -160,7 +160,7 @@ class ShiftRow:
 
 @dataclass(frozen=True)
 class StandPage:
-    """Everything the page of one stand shows; of what is listed, one more would be on the next page."""
+    """Contents of the page of one stand; of each list, one more would be on the next page."""
 
     use: StandUse
     word: StandWord
@@ -176,7 +176,7 @@ class StandPage:
     seating: tuple[tuple[str, str], ...]
     """Quantity, and its scatter from one mounting to the next."""
     unreadable: tuple[str, ...]
-    """Sessions that tell nothing of the stand, because what is stored of them cannot be used."""
+    """Sessions without evidence on the stand, because their stored results cannot be used."""
     units: tuple[FleetRow, ...]
     sessions: tuple[SessionLine, ...]
     causes: tuple[AcceptedCause, ...]
@@ -275,7 +275,7 @@ Day = Annotated[date, Form()]
 
 @router.get("/stands")
 def show_stands(request: Request, store: ReadingFleet, now: Now) -> HTMLResponse:
-    """Every stand, what needs a hand first."""
+    """Shows every stand, those that need action first."""
     return render(request, "stands.html", stands_page(every_stand(store), now))
 
 

@@ -37,7 +37,7 @@ from service.units.store import Units
 MOST_LISTED = 500
 """Units of a type that are looked through, by serial number."""
 MOST_UNITS = 50
-"""Units whose sessions are read: some ten seconds; further ones hardly move what is learned."""
+"""Most units whose sessions are read: some ten seconds; further ones hardly change the result."""
 NONE_IN_FORCE = "No temperature laws of this type are in force."
 TOO_FEW = "Too few units: five with ten sensors in all, each measured six times at different temperatures, are needed."
 

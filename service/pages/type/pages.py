@@ -79,9 +79,9 @@ class TypeReport:
     setters: Mapping[datetime, str]
     """Persons who set the tolerances, by time; the first ones have none."""
     flags: tuple[Flag, ...]
-    """Open ones on what its sessions show together."""
+    """Open flags on joint findings of its sessions."""
     units: tuple[UnitSummary, ...]
-    """Worst first."""
+    """Units, worst first."""
     uses: Mapping[str, Usable]
     models: tuple[ModelRevision, ...]
     """Causes that engineers accepted into its model, and that hold."""
@@ -125,7 +125,7 @@ class TypeRow:
     block: str
     units: int
     counts: tuple[UseCount, ...]
-    """Worst first, none without a unit."""
+    """Counts by permitted use, worst first, none without a unit."""
     tolerances: tuple[str, ...]
 
 
@@ -166,7 +166,7 @@ class TypePage:
     row: TypeRow
     interval: str
     revisions: tuple[RevisionRow, ...]
-    """Newest first: the first one holds."""
+    """Revisions, newest first: the first one holds."""
     sensors: tuple[SensorModel, ...]
     units: tuple[FleetRow, ...]
     more: bool
@@ -322,7 +322,7 @@ def preview_limits(
 
 @router.get("/unit-types/{name:path}")
 def show_type(request: Request, store: Reading, now: Now, name: Key) -> HTMLResponse:
-    """One unit type: what is allowed and who allowed it, the nominal model, its units."""
+    """Shows one unit type: its tolerances and who set them, the nominal model, its units."""
     return render(
         request, "unit_type.html", type_page(type_report(store, name, now), group_section(store, Level.TYPE, name))
     )

@@ -147,7 +147,7 @@ def _text(kind: str, name: str, given: Tolerances) -> str:
 
 
 def _read(kind: str, name: str, given: Tolerances, form: Mapping[str, str], faults: list[Problem]) -> float | None:
-    """SI; what is in force where the number was not changed."""
+    """The number in SI; the one in force where it was not changed."""
     key, current = f"{kind}.{name}", getattr(given, name)
     text = form.get(key, _text(kind, name, given)).strip()
     number = _number(key, text, faults) if text else None

@@ -199,7 +199,7 @@ def read_unit(serial: Serial, store: ReadingFleet, now: Now) -> UnitReportSchema
 @answer
 @dataclass(frozen=True)
 class UsableAnswer(Usable):
-    """The one question of a ground computer, answered."""
+    """Answer to a ground computer: may the unit be used, and its correction."""
 
     correction: str | None
     """Address of the correction that firmware applies."""

@@ -38,7 +38,7 @@ class UnitEvent:
     text: str
     who: str
     note: Note | None
-    """None for a service, which is a break in the history."""
+    """Note; None for a service, which is a break in the history."""
     service: Service | None = None
     withdrawn: str = ""
     """Time, person and reason of a service's withdrawal; empty where it is not withdrawn."""
@@ -76,7 +76,7 @@ class StageTable:
 def events_of(
     services: Sequence[Service], notes: Sequence[Note], withdrawals: Sequence[StateChange] = ()
 ) -> tuple[UnitEvent, ...]:
-    """Newest first."""
+    """The events of a unit, newest first."""
     gone = {line.record: state_in_words(line) for line in withdrawals}
     listed = [UnitEvent(s.at, service_in_words(s), s.note, s.who, None, s, gone.get(str(s.id), "")) for s in services]
     listed += [UnitEvent(note.at, "Note", note.text, note.who, note) for note in notes]

@@ -53,7 +53,7 @@ class NoiseSection:
     charts: ChartSet
     sensors: tuple[str, ...]
     rows: tuple[NoiseRow, ...]
-    """Newest first."""
+    """Rows, newest first."""
 
 
 @dataclass(frozen=True)
@@ -145,7 +145,7 @@ class UnitView:
     due: str
     """Due date of the next calibration, where that does not lead."""
     worst: ChartSet | None
-    """The history of the parameter that the verdict hangs on; None where none was judged."""
+    """History of the parameter that sets the verdict; None where none was judged."""
     shares: ShareTable | None
     failed: str
     """Statement that the results from its latest records could not be computed, with the reason; empty otherwise."""
@@ -157,11 +157,11 @@ class UnitView:
     covered: str
     """The temperatures that its calibrations cover."""
     flags: tuple[FlagCard, ...]
-    """Open ones first."""
+    """Flags, open ones first."""
     events: tuple[UnitEvent, ...]
     """Services and notes, newest first."""
     stages: StageTable | None
-    """None where the unit was never marked as found."""
+    """The unit as found and as left; None where it was never marked as found."""
     custody: tuple[Custody, ...]
     """Locations and custodians, the latest first."""
     steps: Mapping[CustodyStep, str]
@@ -169,11 +169,11 @@ class UnitView:
     kinds: tuple[tuple[str, str], ...]
     """Kinds of service: identifier and name."""
     next: NextCalibration | None
-    """None before a session was judged."""
+    """Outlook; None before a session was judged."""
     raw: bool
     """Whether what the whole block did is left in."""
     noise: NoisePart | None
-    """None where no session was sent as a raw log with rests."""
+    """Noise at rest; None where no session was sent as a raw log with rests."""
     group: GroupSection | None
     """Joint diagnosis of its sessions; None where that is not made of its current records."""
     remarks: Remarks | None

@@ -42,7 +42,7 @@ class Remarks:
 
 
 def remarks(unit: str, session: str, notes: Sequence[Note], files: Sequence[Attachment], most_bytes: int) -> Remarks:
-    """Oldest first, as they were said."""
+    """The remarks on one record, oldest first."""
     lines = tuple(AttachmentLine(file, size_in_words(file.size)) for file in files)
     return Remarks(unit, session, tuple(notes), lines, size_in_words(most_bytes))
 

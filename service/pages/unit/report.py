@@ -29,7 +29,7 @@ class UnitReport:
     reference_session: str | None
     """Reference for the next session; None when that becomes the reference."""
     sessions: tuple[StoredSession, ...]
-    """The latest ones, newest first."""
+    """Latest sessions, newest first."""
     services: tuple[Service, ...]
     """All known breaks, oldest first."""
     withdrawn_services: tuple[Service, ...] = ()
@@ -38,7 +38,7 @@ class UnitReport:
     waiting: int = 0
     """Sessions that are still to be judged again after a change of the records."""
     outlook: UnitOutlook | None = None
-    """None before a session was judged."""
+    """Outlook; None before a session was judged."""
     said: UnitEvents = NO_EVENTS
     entry: Registered | None = None
     """Entry in the register."""

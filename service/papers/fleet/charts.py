@@ -26,8 +26,9 @@ BARS = {
     Verdict.CONDITIONAL_FAIL: (LIMIT + 1, LIMIT + 1),
     Verdict.FAIL: (LIMIT + 2, LAST // STEP),
 }
-"""First and last bar of a verdict: what is within U of its tolerance has one, so that a better verdict is never to the
-right of a worse one, however large U is."""
+"""First and last bar of a verdict: a unit within U of its tolerance has a bar of its own, so that a better verdict is
+never to the right of a worse one, however large U is.
+"""
 TICKS = list(range(0, LAST + 1, 2 * STEP))
 """Numbered bars of the tolerance axis: every other one, so that the numbers do not overlap."""
 
@@ -45,7 +46,7 @@ def fleet_chart(tallies: Iterable[Tally]) -> ChartSet:
 
 
 def is_drawn(tally: Tally) -> bool:
-    """Whether its units were judged against their tolerance: of what is undecided no share of it is claimed."""
+    """Whether its units were judged against their tolerance: an undecided unit has no stated share of it."""
     return tally.bar != NOT_JUDGED and tally.verdict is not Verdict.UNDECIDABLE
 
 

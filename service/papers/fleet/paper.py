@@ -177,7 +177,7 @@ class FleetPaper:
     total: int
     simulated: int
     counts: tuple[ConditionCount, ...]
-    """Worst first, every unit once."""
+    """Counts by condition, worst first, every unit once."""
     chart: str
     overdue: tuple[PaperNotice, ...]
     more_overdue: int

@@ -23,7 +23,7 @@ from service.settings import VERSION
 from service.storage import Storage
 
 STANDARD_GRAVITY = 9.80665
-"""m/s², at which what is left of an accelerometer's error is stated."""
+"""m/s², at which the remaining error of an accelerometer is stated."""
 FRAME = (
     "It corrects the vector that the driver makes of the readings by their nominal scale and axes.",
     "The driver's sensor axes must be the block's.",
@@ -57,12 +57,12 @@ class ExportInput:
 
     @property
     def accelerometers(self) -> NominalVector | None:
-        """None where the session calibrates none."""
+        """Vector of the accelerometers; None where the session calibrates none."""
         return self.vectors.get(ACCELEROMETER)
 
     @property
     def gyros(self) -> NominalVector | None:
-        """None where the session calibrates none."""
+        """Vector of the gyros; None where the session calibrates none."""
         return self.vectors.get(GYROSCOPE)
 
 

@@ -18,7 +18,7 @@ WITHOUT_U = 1e-6, 1e-12
 """Relative, and SI: of a number that has none."""
 U = "valueExpandedMU"
 Difference = tuple[str, str, str]
-"""Place, what is printed, what is computed."""
+"""Place, printed value, computed value."""
 Slack = Mapping[Element, tuple[float, ...]]
 """Greatest difference of every number of an element."""
 

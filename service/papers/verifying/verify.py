@@ -1,6 +1,6 @@
-"""Steps: a certificate and its session's file → every check, with what is printed and what is computed.
+"""Steps: a certificate and its session's file → every check, with the printed and the computed values.
 
-Nothing of the service that issued it is asked: what the file does not tell stands in the certificate itself.
+The issuing service is not asked: facts that the file does not tell are in the certificate itself.
 """
 
 from collections.abc import Iterator
@@ -40,7 +40,7 @@ class Beside:
 
 
 def verify(certificate: bytes, raw: RawFile, beside: Beside, now: datetime) -> Verification:
-    """Every check of a certificate."""
+    """Makes every check of a certificate."""
     try:
         root = parsed(certificate)
     except etree.XMLSyntaxError as fault:

@@ -23,7 +23,7 @@ class Occasion:
 
 
 def raise_flag(store: Store, occasion: Occasion, concern: Concern) -> None:
-    """Opens a flag on a matter that the clock or the other units tell of, and that has none open."""
+    """Opens a flag on a matter that the clock or the other units decide, and that has none open."""
     number = Flags(store).add(occasion.unit, concern, occasion.session, occasion.at)
     tell(store, occasion, NoticeKind.RAISED, concern.summary, number)
     Fleet(store).count_flags(occasion.unit)

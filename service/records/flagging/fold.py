@@ -168,7 +168,7 @@ MATTERS = (Matter.TOLERANCE, Matter.CAUSE, Matter.UNEXPLAINED)
 units.
 """
 ANY = "*"
-"""Every place."""
+"""Stands for every place."""
 
 
 @dataclass(frozen=True)
@@ -177,7 +177,7 @@ class Opened:
 
     concern: Concern
     session: str
-    """The last one that showed it."""
+    """Last session that showed it."""
     at: Moment
     """Moment of that session."""
     proposal: str = ""

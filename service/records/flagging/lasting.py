@@ -29,12 +29,12 @@ from service.units.store import Units
 def no_longer_overdue(
     store: Store, occasion: Occasion, outlook: UnitOutlook | None, latest: StoredSession | None = None
 ) -> tuple[Flag, ...]:
-    """The one matter that resolves itself: nothing is due, or not yet. What is open still is returned, and says what is
-    due now.
+    """Resolves flags on overdue units, the one matter that resolves itself, where nothing is due any more. Returns the
+    open ones, with the present due date.
 
-    ``latest``: the unit's latest calibration, the reason where it came after the flag was raised.
-    It is raised as time passes (`overdue_units`) and not here: records that are entered late, one after another, would
-    raise and resolve it with every one.
+    ``latest``: the unit's latest calibration, the reason where it came after the flag was raised. These flags are
+    raised as time passes (`overdue_units`) and not here: records that are entered late, one after another, would raise
+    and resolve one with every record.
     """
     opened = tuple(flag for flag in Flags(store).open_of(occasion.unit) if flag.matter is Matter.OVERDUE)
     concern = overdue_by(outlook, occasion.at)

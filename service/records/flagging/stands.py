@@ -89,7 +89,7 @@ def _open(store: Store, matter: Matter, stand: str) -> tuple[Flag, ...]:
 
 
 def _bring(store: Store, occasion: Occasion, opened: tuple[Flag, ...], concern: Concern) -> None:
-    """Raises the flag, or says in the open one what is known now."""
+    """Raises the flag, or updates the open one."""
     if not opened:
         raise_flag(store, occasion, concern)
     for flag in opened:
@@ -118,7 +118,7 @@ def flag_shifted_stands(storage: Storage, now: datetime, alone: Alone = plainly)
 
 
 def _flag_shift(storage: Storage, condition: StandCondition, now: datetime) -> None:
-    """An open flag says what is known now, also where the shift is dated anew. It is of the unit that comes first."""
+    """Raises or updates the flag on a shift, also where the shift is dated anew. It is on the unit that comes first."""
     since = min(shift.since for shift in condition.shifts if shift.until is None)
     with storage.database.writing() as store:
         Stands(store).hold(condition.stand)

@@ -55,7 +55,7 @@ QUESTIONED = Condition(
 NOT_JUDGED = Condition("none", "Not judged", "circle", "No tolerance or no reference is set.")
 
 CONDITIONS = (UNFIT, PROBABLY_UNFIT, UNDECIDED, PROBABLY_FIT, FIT)
-"""Worst first, as they are listed."""
+"""Conditions, worst first, as they are listed."""
 RANKS = {condition.key: rank for rank, condition in enumerate(CONDITIONS)}
 """Place by key."""
 WITH_RESERVATION = "with reservation"

@@ -15,7 +15,7 @@ from service.kit.measures import COVERAGE, deviation_measure, measured
 NAMES = {"scale": "scale factor", "bias": "bias"}
 """Names of the parameters that follow temperature."""
 MINUTE = 60.0
-"""s."""
+"""Seconds in a minute."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ def celsius(temperature: float) -> str:
 
 
 def curves_in_words(calibration: Calibration) -> CurvesInWords | None:
-    """None where the session holds no curves."""
+    """The curves of a session; None where it holds none."""
     curves = calibration.thermal
     if curves is None:
         return None

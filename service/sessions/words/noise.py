@@ -21,7 +21,7 @@ NAMES = {
     "random-walk": "Random walk K",
     "quantisation": "Quantisation Q",
 }
-"""The one that most records decide first."""
+"""Names of the terms, the one that most records decide first."""
 MEANINGS = {
     "white-noise": "Scatter of a one-second average at rest: velocity or angle random walk.",
     "bias-instability": "Flicker noise of the bias at rest: averaging does not get below about two thirds of it.",
@@ -32,7 +32,7 @@ NOT_DECIDED = "cannot be determined from a record of this length"
 SEVERAL = 3
 """Sensors of a kind, from which on all of them together are named in one sentence."""
 LEVEL = 0.01
-"""Chance that a unit whose noise is the same is said to have become noisier, over all its sensors and terms."""
+"""Chance that an unchanged unit is reported as noisier, over all its sensors and terms."""
 
 
 def size_in_words(kind: str, name: str, value: float | None, sigma: float | None) -> str:

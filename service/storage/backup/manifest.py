@@ -75,7 +75,7 @@ class Manifest(_Part):
 
     @property
     def members(self) -> set[str]:
-        """Every name in the backup."""
+        """Names of all members of the backup."""
         return {MANIFEST, *(table.member for table in self.tables), *map(file_member, self.files)}
 
 
@@ -134,7 +134,7 @@ def faulty_names(archive: zipfile.ZipFile, table: TableContents) -> Iterator[str
 
 
 def _name(column: str, value: Any) -> Any:
-    """None where the row names no file."""
+    """The hash or place of a row's file; None where the row names no file."""
     if column == HASHES or value is None:
         return value
     document = json.loads(value)

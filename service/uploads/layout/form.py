@@ -285,7 +285,7 @@ def _arranged(fields: Mapping[str, str], count: int) -> list[list[float] | None]
 
 
 def half_angle_of(fields: Mapping[str, str]) -> float | None:
-    """Degrees, of the cone; None where what is written is no angle of one."""
+    """Half angle of the cone, degrees; None where the written number is no angle of one."""
     angle = _value(fields.get("cone_angle", ""))
     if angle is None:
         return HALF_ANGLE

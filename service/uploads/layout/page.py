@@ -1,4 +1,4 @@
-"""The page of a table of custom layout: how each column is read, what is missing, and the first rows."""
+"""The page of a table of custom layout: the mapping of each column, the missing facts, and the first rows."""
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
@@ -63,7 +63,7 @@ class ColumnRow:
 
 @dataclass(frozen=True)
 class SensorFields:
-    """One sensor with what is known of it."""
+    """One sensor with its known facts."""
 
     name: str
     kind: str
