@@ -37,7 +37,7 @@ from service.work import api as work
 
 
 def describe(app: FastAPI) -> None:
-    """Makes `/openapi.json` say of every error what the service really answers."""
+    """Completes `/openapi.json` with the answers that the service really gives to errors."""
 
     def description() -> Json:
         if app.openapi_schema is None:

@@ -53,7 +53,7 @@ def is_wanted(storage: Storage) -> bool:
 
 
 def fill(storage: Storage, coverage_factor: float, advance: Callable[[], None]) -> None:
-    """Uploads every session of every member; ``advance`` is called once a session. What is there already stays."""
+    """Uploads every session of every member; ``advance`` is called once a session. Existing sessions stay."""
     with storage.database.writing() as store:
         for kind in (ACCELEROMETER, GYROSCOPE):
             UnitTypes(store).add_once(unit_type(kind), START)
@@ -62,7 +62,7 @@ def fill(storage: Storage, coverage_factor: float, advance: Callable[[], None]) 
 
 
 def _upload_member(storage: Storage, member: DemoMember, coverage_factor: float, advance: Callable[[], None]) -> None:
-    """One unit's life: sessions in order, and what people did in between."""
+    """Uploads one unit's life: sessions in order, and people's acts in between."""
     waiting: list[Done] = [*member.services, *member.handled, *member.remarks]
     waiting.sort(key=lambda done: done.at)
     files = list(files_of(member))

@@ -178,7 +178,7 @@ def register_webhook(new: NewWebhook, storage: StorageOf, settings: SettingsOf, 
 
 @webhooks_router.get("/{id}/deliveries", responses=errors(404, 422))
 def list_deliveries(id: Number, store: Reading, limit: Limit = 100) -> DeliveryList:
-    """The latest messages to an address, and what became of them."""
+    """The latest messages to an address, and their outcomes."""
     found = Webhooks(store).deliveries(Webhooks(store).get(id).id, limit)
     return DeliveryList(deliveries=found)
 

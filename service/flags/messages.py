@@ -99,7 +99,7 @@ class Outbox:
             return Webhooks(store).claim(now, now + CLAIM, AT_A_TIME, busy)
 
     def put(self, outgoing: Outgoing, outcome: str, *, accepted: bool) -> None:
-        """Keeps what became of an attempt."""
+        """Stores the outcome of an attempt."""
         state, at = _after(outgoing, accepted, self.clock())
         with self.storage.database.writing() as store:
             Webhooks(store).put(outgoing.delivery, state, outcome, at)

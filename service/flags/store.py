@@ -156,7 +156,7 @@ class Flags(Queries):
         return tuple(_flag(row, serial) for row, serial in found)
 
     def open_stands_of(self, unit: int) -> tuple[str, ...]:
-        """Stands that a unit was ever measured on, and that have an open flag for what sessions found on them."""
+        """Stands on which a unit was ever measured and that have an open flag from sessions on them."""
         on = select(StandRow.name).join(SessionRow, SessionRow.stand_id == StandRow.id)
         conditions = (FlagRow.matter == Matter.STAND, FlagRow.scope == Scope.STAND, FlagRow.state != FlagState.RESOLVED)
         query = select(FlagRow.place).where(*conditions, FlagRow.place.in_(on.where(SessionRow.unit_id == unit)))

@@ -107,7 +107,9 @@ class Webhooks(Queries):
         return tuple(claimed)
 
     def put(self, delivery: int, state: DeliveryState, outcome: str, at: datetime) -> None:
-        """Writes what became of an attempt; ``at``: when it ended, or where it still waits the time of the next one."""
+        """Writes the outcome of an attempt; ``at``: its end, or where the message still waits the time of the next
+        one.
+        """
         is_waiting = state is DeliveryState.WAITING
         put = update(DeliveryRow).where(DeliveryRow.id == delivery, DeliveryRow.state == DeliveryState.WAITING)
         self._session.execute(put.values(state=state, outcome=outcome, ended_at=None if is_waiting else at))

@@ -29,7 +29,7 @@ class FleetRows(Queries):
     """Rows of many units, by serial number."""
 
     def latest_decisions(self, serials: tuple[str, ...]) -> Iterator[tuple[str, str, Decision]]:
-        """Serial number, session and what was decided there, of the latest session of some units."""
+        """Serial number, session and decisions of the latest session of some units."""
         query = (
             select(UnitRow.serial, DecisionRow)
             .select_from(ConditionRow)

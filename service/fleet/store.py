@@ -96,7 +96,7 @@ _LATEST = (
     .order_by(SessionRow.started_at.desc(), SessionRow.id.desc())
     .limit(1)
 )
-"""The latest accepted session of a unit, what was known of it, and how many there are."""
+"""The latest accepted session of a unit, its stored condition, and its number of sessions."""
 
 
 class Fleet(Queries):
@@ -200,7 +200,7 @@ class Fleet(Queries):
         return _condition(self._session.execute(_tallies().add_columns(OPEN_OF_GROUPS)).all())
 
     def condition_at(self, now: datetime) -> FleetCondition:
-        """The same, and how many should have been calibrated by now, in one query."""
+        """The condition of the fleet with the number of overdue units, in one query."""
         due = overdue_count(now).scalar_subquery()
         rows = self._session.execute(_tallies().add_columns(OPEN_OF_GROUPS, due)).all()
         return replace(_condition([row[:-1] for row in rows]), overdue=rows[0][-1] if rows else 0)

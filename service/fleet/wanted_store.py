@@ -92,7 +92,7 @@ WIDEST = (Level.STAND, Level.TYPE, Level.UNIT)
 
 
 class Announcements(Queries):
-    """Stands that shifted, sessions that wait for an engineer, what sessions show together."""
+    """Stands that shifted, sessions that wait for an engineer, and findings of groups."""
 
     def all(self, questioned: int, found: int) -> Announced:
         """All announcements, with at most so many questioned sessions and findings of groups."""

@@ -98,7 +98,7 @@ PENDING: dict[int | str, Json] = {
 
 router = APIRouter(tags=["diagnosis"])
 RETRY_AFTER = "5"
-"""Seconds: what a group of some tens of sessions takes."""
+"""Seconds until a retry: the time for a group of some tens of sessions."""
 ANSWERS = {**PENDING, **errors(404, 422)}
 ACCEPTED = errors(400, 404, 409, 422)
 

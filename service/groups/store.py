@@ -149,7 +149,7 @@ class Groups(Queries):
         return Group(level, found[0], name), None if found[1] is None else _answer(found[1]), found[2], found[3] or ""
 
     def put(self, group: Group, answer: GroupAnswer) -> None:
-        """Stores what was found of a group in place of what was."""
+        """Stores the answer of a group in place of the earlier one."""
         conditions = (GroupDiagnosisRow.level == group.level, GroupDiagnosisRow.group_id == group.key)
         self._session.execute(delete(GroupDiagnosisRow).where(*conditions))
         document = None if answer.document is None else zlib.compress(answer.document.encode())
@@ -158,7 +158,7 @@ class Groups(Queries):
         self._session.expire_all()
 
     def put_own(self, group: Group, sentence: str) -> None:
-        """Stores what a group shows of its own, in a line."""
+        """Stores a group's own findings, in a line."""
         row = GroupDiagnosisRow
         known = update(row).where(row.level == group.level, row.group_id == group.key)
         self._session.execute(known.values(own=sentence))
@@ -242,7 +242,7 @@ class Statistics(Queries):
         return True
 
     def keep(self, session: str, record: SessionStatistics) -> None:
-        """Stores what was made."""
+        """Stores the statistics of a session."""
         self._put(session, document=zlib.compress(json_text(STORED.written(record)).encode()), attempts=0)
 
     def fail(self, session: str, why: str) -> None:

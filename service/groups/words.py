@@ -324,7 +324,7 @@ def _spread(finding: GroupFinding) -> str:
 
 
 def holds(revision: ModelRevision, finding: GroupFinding) -> bool:
-    """Whether a revision accepted what a group shows."""
+    """Whether a revision accepted a group's finding."""
     key = (revision.scope, revision.subject, revision.cause)
     theirs = (SCOPES[finding.level], finding.subject, finding.cause)
     return key == theirs and set(finding.sensors) <= set(revision.sensors)
@@ -368,5 +368,5 @@ def since_in_words(form: str, since: str | None) -> str:
 
 
 def day_in_words(started_at: str) -> str:
-    """``3 May 2026`` of what a file states."""
+    """The day of a start as stated in a file: ``3 May 2026``."""
     return day_of(moment(started_at))

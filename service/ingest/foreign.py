@@ -7,7 +7,7 @@ from estimator.errors import FormatError, Problem
 from service.ingest.formats import is_binary, start_of
 
 START = 256
-"""Bytes that tell what a file is."""
+"""Bytes from which the kind of file is recognised."""
 JPEG = "is a picture (JPEG); type or export its readings into a table and upload that as XLSX or CSV"
 PNG = "is a picture (PNG); type or export its readings into a table and upload that as XLSX or CSV"
 OTHER_PICTURE = "is a picture; type or export its readings into a table and upload that as XLSX or CSV"

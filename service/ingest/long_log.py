@@ -339,7 +339,7 @@ class _Scan:
 
 
 def ahead(frames: Iterator[pl.DataFrame]) -> Iterator[pl.DataFrame]:
-    """The same, reading the next frame while one is processed."""
+    """The frames, reading the next one while one is processed."""
     with ThreadPoolExecutor(1) as reader:
         pending = reader.submit(next, frames, None)
         while (frame := pending.result()) is not None:

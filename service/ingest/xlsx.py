@@ -189,7 +189,7 @@ def read_xlsx(content: bytes, filename: str) -> dict[str, object]:
 
 
 def read_with_places(content: bytes, filename: str) -> tuple[dict[str, object], Where]:
-    """The same, with a function from field and row to the cell."""
+    """The session document of a workbook, with a function from field and row to the cell."""
     check_workbook(content, filename)
     names, session, readings = _sheets(content, filename)
     problems = Problems(filename, in_force().extent)

@@ -69,7 +69,7 @@ def _pieces(store: Store, new: NewJob) -> int:
 
 
 def may_cancel(job: Job, person: Person) -> bool:
-    """Whoever requested it, and engineers."""
+    """Whether a person may cancel a job: its requester and engineers may."""
     return person.may(Role.ENGINEER) or bool(job.account and job.account == person.login)
 
 

@@ -93,7 +93,7 @@ class Made:
     """The file that a job made."""
 
     filename: str
-    """Name for whoever keeps it."""
+    """Name for saving it."""
     size: int
     """Bytes."""
     sha256: str

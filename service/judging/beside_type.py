@@ -23,8 +23,9 @@ FEWEST = 5
 MOST = 60
 """References, the newest: enough for a spread, and a millisecond to read."""
 FAR = 50.0
-"""Spreads, and tolerances, that no unit of a type lies apart: a slip of a factor is a hundred and more, and what a
-unit may do by itself, its tolerances judge later."""
+"""Multiple of the spread, and of the tolerance, that no unit of a type lies apart: a mistaken factor gives a hundred
+and more, and smaller changes of a unit are judged by its tolerances later.
+"""
 COARSE = 100.0
 """Ratio of uncertainties beyond what more positions or longer averages can do: ten thousand times the readings."""
 RAYLEIGH = 1.1774

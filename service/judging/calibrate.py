@@ -59,8 +59,8 @@ def basis_of(store: Store, new: Checked, model: Model) -> CalibrationBasis:
 
 @outside_writing
 def calibrate(new: Checked, basis: CalibrationBasis) -> Calibrated:
-    """The calibration of a session, computed without access to the store; SessionError where the session cannot tell
-    what it should.
+    """The calibration of a session, computed without access to the store; SessionError where the session does not
+    determine what its programme requires.
     """
     if basis.compared_with is None:
         return Calibrated(new, basis.model, _under(basis.model, new.session), None)
@@ -72,8 +72,9 @@ def calibrate(new: Checked, basis: CalibrationBasis) -> Calibrated:
 
 
 def rests_on_model(programme: str) -> bool:
-    """Whether accepted causes change what sessions of a programme give: by their own fit, or by what they are compared
-    with."""
+    """Whether accepted causes change the results of sessions of a programme: by their own fit, or by the calibration
+    that they are compared with.
+    """
     return programme in CALIBRATIONS or programme == IN_SERVICE
 
 
@@ -85,7 +86,7 @@ def _under(model: Model, session: CalibrationSession) -> Calibration:
 
 
 def parameter_values(calibration: Calibration) -> tuple[ParameterValue, ...]:
-    """Every parameter that the session speaks of; what was not observed has neither value nor uncertainty."""
+    """Every parameter that the session concerns; one that was not observed has neither value nor uncertainty."""
     return tuple(
         _value(index, sensor, parameter)
         for index, sensor in enumerate(calibration.sensors)

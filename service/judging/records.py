@@ -67,7 +67,7 @@ class UnitRecords:
     choices: tuple[str, ...]
     """Sessions that engineers chose for references, the oldest choice first."""
     references: frozenset[str]
-    """Sessions that are said to be what others are judged against, whatever their state."""
+    """Sessions marked as references, whatever their state."""
     diagnosed: Mapping[str, datetime]
     """Sessions with a diagnosis, whatever their state, and when they were measured."""
     waiting: Mapping[str, datetime]
@@ -129,7 +129,7 @@ class SaidVerdict:
     Empty where the verdict is plain.
     """
     said: str
-    """The verdict in words, in one breath with its reservations."""
+    """The verdict in words together with its reservations."""
 
 
 def said(record: StoredSession | Receipt | UnitSummary) -> dict[str, Any]:
@@ -154,7 +154,7 @@ class OpenFlag:
 
 @dataclass(frozen=True)
 class UseFacts:
-    """Everything that decides what a unit may be used for."""
+    """All facts that decide the permitted use of a unit."""
 
     unit: UnitSummary
     is_calibration: bool = True
@@ -195,7 +195,7 @@ class Usable:
     action: str
     """Action that is due, as a clause; empty where there is none."""
     reasons: tuple[str, ...]
-    """Everything that speaks against it; empty where it may be used."""
+    """Reasons against the use; empty where it may be used."""
     reservations: tuple[str, ...]
     """Facts to know that do not forbid the use."""
     until: datetime | None
@@ -213,7 +213,7 @@ class Usable:
 
     @property
     def objection(self) -> str:
-        """The gravest thing that speaks against it, or that must be known; empty where there is none."""
+        """The gravest reason against the use, or fact to know; empty where there is none."""
         return next(iter((*self.reasons, *self.reservations)), "")
 
     @property

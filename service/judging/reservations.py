@@ -154,11 +154,11 @@ class Otherwise:
 def verdicts_under_alternatives(
     session: CalibrationSession, findings: tuple[Finding, ...], basis: Basis
 ) -> Iterator[Otherwise]:
-    """The verdicts under each of the likeliest alternatives of the strongest finding, in its place beside the other
+    """The verdicts under each of the likeliest alternatives of the strongest finding, in its place among the other
     names.
 
     There are none where the record is wrong: the session is to be uploaded again; none for an alignment: it removes the
-    effects of such causes; and none for a finding that only several sessions show together: this one cannot fit it.
+    effects of such causes; and none for a finding from several sessions together: this one cannot fit it.
     """
     findings = tuple(f for f in findings if f.over_sessions is None)
     if (
@@ -178,7 +178,7 @@ def verdicts_under_alternatives(
 
 
 def _of_the_session(first: Finding) -> tuple[str, ...]:
-    """Alternatives that a model of the session can hold: what temperature did between sessions it cannot show."""
+    """Alternatives that a model of the session can hold: it cannot show an effect of temperature between sessions."""
     known = find(first.cause)
     between = known is not None and known.between
     return tuple(name for name in first.alternatives if not (between and name in OF_TEMPERATURE))

@@ -124,7 +124,7 @@ class Derivations(Queries):
         self._session.expire_all()
 
     def put_revisions(self, revisions: Mapping[str, int]) -> None:
-        """Makes sessions speak for their calibrations of a revision; the ones before stay where they are."""
+        """Puts the calibrations of sessions under a revision in force; the earlier ones stay stored."""
         new = [{"session": id, "new_revision": revision, "new_basis": NOT_JUDGED} for id, revision in revisions.items()]
         self._session.execute(_REVISED, new)
         self._session.expire_all()

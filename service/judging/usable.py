@@ -36,7 +36,7 @@ SLACK = timedelta(days=1)
 
 @dataclass(frozen=True)
 class Objection:
-    """One thing that speaks against the use, or that must be known."""
+    """One reason against the use, or fact to know."""
 
     text: str
     """Objection in a sentence."""

@@ -31,7 +31,7 @@ def usable_of(store: Store, units: Sequence[UnitSummary], now: datetime) -> dict
 
 
 def settle_uses(store: Store, units: Collection[int]) -> None:
-    """Stores what units may be used for; where no flag says that a unit is overdue, until it is due."""
+    """Stores the permitted use of units up to their due date, or, where a flag marks a unit as overdue, after it."""
     found, known = UseStore(store), Fleet(store).by_keys(units)
     facts = found.facts([summary for summary, _ in known.values()], END_OF_TIME)
     found.put(
@@ -48,7 +48,9 @@ def _moment(known: UseFacts) -> datetime:
 
 
 def settle_all(storage: Storage) -> None:
-    """Stores it of every unit, a few in each transaction: after an upgrade, and against anything forgotten."""
+    """Stores the permitted use of every unit, a few in each transaction: after an upgrade, and against anything
+    forgotten.
+    """
     after: int | None = 0
     while after is not None:
         with storage.database.writing() as store:

@@ -62,7 +62,7 @@ class UseStore(Queries):
         return found[-1] if found else None
 
     def put(self, uses: Mapping[int, tuple[Usable, bool]]) -> None:
-        """Rewrites what units may be used for, by their keys, and whether the fleet lists them."""
+        """Rewrites the permitted use of units, by their keys, and whether the fleet lists them."""
         rows = [
             {"unit_id": unit, "answer": use.answer, "rank": RANKS[use.answer], "is_listed": listed, "use": str(use.use)}
             for unit, (use, listed) in uses.items()

@@ -176,7 +176,7 @@ def accept(
     by: By,
     note: Annotated[str, Form(max_length=2000, pattern=NO_NUL)] = "",
 ) -> RedirectResponse:
-    """Accepts what a group of sessions shows, and shows what that moves."""
+    """Accepts a finding of a group of sessions, and shows the results."""
     with reception.storage.database.reading() as store:
         group = Groups(store).find(level, name)
     accepted = accept_lasting(reception.storage, group, NewLasting(cause, tuple(sensors), by, note), now)

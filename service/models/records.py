@@ -110,8 +110,9 @@ class ModelRevision:
     session: str
     """The session that showed it."""
     evidence: AcceptedFinding | None
-    """p-value, strength, amplitude with sigma, and gain of the finding; `pooled`: what a group of sessions adds,
-    null where a single session showed it."""
+    """p-value, strength, amplitude with sigma, and gain of the finding; `pooled`: facts from a group of sessions, null
+    where a single session showed it.
+    """
     accepted_by: str
     """Person who accepted it."""
     note: str
@@ -231,7 +232,7 @@ class Recomputation:
     unit: str
     """Serial number."""
     state: Progress
-    """`waiting`, `done`, or `given up`: then its sessions keep what they had."""
+    """`waiting`, `done`, or `given up`: then its sessions keep their calibrations."""
     done_at: datetime | None
     """Time of completion, UTC; null while it waits."""
     outcome: Recomputed | None

@@ -92,7 +92,7 @@ def of_type(store: Store, unit: int) -> TypeHistories:
 
 
 def digest(histories: TypeHistories) -> str:
-    """64 hexadecimal digits, the same for the same histories."""
+    """The digest of histories, 64 hexadecimal digits."""
     return sha256(RULE + b"".join(_bytes(histories))).hexdigest()
 
 

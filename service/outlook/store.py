@@ -195,7 +195,7 @@ class Outlooks(Queries):
         self._session.execute(delete(HistoryRow).where(HistoryRow.unit_id == unit))
 
     def put_histories(self, unit: int, evidence: Mapping[tuple[str, str], Sequence[Evidence]]) -> None:
-        """Rewrites what a unit's histories contribute to its type, by kind of sensor and parameter."""
+        """Rewrites the evidence of a unit's histories for its type, by kind of sensor and parameter."""
         self._session.execute(delete(HistoryRow).where(HistoryRow.unit_id == unit))
         self._session.add_all(
             HistoryRow(unit_id=unit, kind=kind, parameter=parameter, evidence=packed(histories))

@@ -108,7 +108,9 @@ def _worst_of(store: Store, unit: UnitSummary) -> tuple[HistoryPoint, ...]:
 
 @router.get("/units/{serial:path}/parameters/{name}")
 def show_parameter(request: Request, store: Reading, serial: Key, name: Key, raw: bool = False) -> HTMLResponse:
-    """The history of one parameter of all sensors of a kind; ``raw``: what the whole block did is left in."""
+    """Shows the history of one parameter of all sensors of a kind; ``raw``: with the common motion of the whole block
+    left in.
+    """
     heads = parameter_heads(History(store).latest(Units(store).key(serial)), None)
     head = next((head for head in heads if head.anchor == name), None)
     if head is None:
@@ -124,7 +126,7 @@ def show_parameter(request: Request, store: Reading, serial: Key, name: Key, raw
 def show_unit(
     request: Request, store: Reading, settings: SettingsOf, now: Now, serial: Key, raw: bool = False
 ) -> HTMLResponse:
-    """One unit; ``raw``: histories of its parameters with what the whole block did left in."""
+    """Shows one unit; ``raw``: histories of its parameters with the common motion of the whole block left in."""
     report = unit_report(store, serial, now)
     latest = History(store).latest(Units(store).key(serial))
     is_heard = any(point.parameter in TERMS for point in latest)

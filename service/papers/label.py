@@ -34,7 +34,7 @@ class Label:
     due: str
     """Due date; empty where it was not wanted, or where something else must be done first."""
     why: str
-    """The rule that set the date, what to do, or what speaks against the use; empty where the label states none."""
+    """The rule that set the date, the action, or the reason against the use; empty where the label states none."""
     stated: str
     """The day on which it was printed: everything else is that of this day."""
     address: str

@@ -26,7 +26,7 @@ TEMPLATE = "status.typ"
 MOST_PARAMETERS = 10
 MOST_RESERVATIONS = 5
 TONES = {Use.YES: "pass", Use.RESERVED: "conditional-pass", Use.NO: "fail", Use.PENDING: "undecidable"}
-"""Colours of what a unit may be used for."""
+"""Colours of the permitted use."""
 
 
 @dataclass(frozen=True)

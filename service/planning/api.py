@@ -1,4 +1,4 @@
-"""Plans: what a session would tell before it is measured."""
+"""Plans: expected results of a session before it is measured."""
 
 from typing import Annotated, Literal
 
@@ -17,7 +17,7 @@ router = APIRouter(prefix="/plan", tags=["planning"])
 
 
 class PlanDocument(BaseModel):
-    """imu-plan/1: what a session would tell, SI; elevations in degrees."""
+    """imu-plan/1: expected results of a session, SI; elevations in degrees."""
 
     model_config = {"extra": "allow"}
 
@@ -42,7 +42,7 @@ class KnownSoFar(BaseModel):
 
 
 class MissingDocument(BaseModel):
-    """imu-missing/1: what a session that is being measured still lacks."""
+    """imu-missing/1: the missing positions of a session that is being measured."""
 
     format: str = Field(description="`imu-missing/1`.")
     done: int = Field(description="Positions so far.")

@@ -1,4 +1,4 @@
-"""A session planned, a unit found ready, what a session still lacks; nothing is stored."""
+"""Plans of sessions, readiness of units, and missing positions of a session; nothing is stored."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -133,7 +133,7 @@ def _answered(storage: Storage, session: CalibrationSession, asked: ReadyQuestio
 
 
 def usual_length(storage: Storage, serial: str, unit_type: str) -> float | None:
-    """s that the last session of the unit, or else of its type, took; None where none says so."""
+    """Duration of the last session of the unit, or else of its type, s; None where none states it."""
     try:
         last = earlier(storage, serial, unit_type)
     except (NotFoundError, SessionError):

@@ -1,4 +1,6 @@
-"""Step: what the database keeps of sessions' calibrations under a model revision, beside what others gave."""
+"""Step: calibrations of sessions under a model revision → their rows in the database, beside those of other
+revisions.
+"""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace

@@ -2,12 +2,12 @@
 
 A unit whose computing fails is reported and stops no other.
 
-What is done is not done again: `units_behind` names the units with sessions of an earlier revision than concerns them.
-So a run that was ended goes on where it was, and a second one beside it does nothing twice.
+Finished units are not computed again: `units_behind` names the units with sessions of an earlier revision than concerns
+them. So a run that was ended goes on where it was, and a second one beside it does nothing twice.
 
 A task is a unit: its worker reads, computes, judges and writes, over a connection of its own. Of the work on a session
-less than a third is its calibration, and the rest would wait for one writer (`python -m benchmarks.p8_recompute`).
-A worker that dies leaves a transaction that the database undoes, and Dask gives the unit to another.
+less than a third is its calibration, and the rest would wait for one writer (`python -m benchmarks.p8_recompute`). A
+worker that dies leaves a transaction that the database undoes, and Dask gives the unit to another.
 
 No address and no password travels: a worker reads its own settings, and a task names the last line of the audit trail,
 so that a worker with another database refuses it. Processes of this machine speak over TLS with keys made for the run.

@@ -61,7 +61,7 @@ class Recalibrated:
     unchanged: int
     """Sessions that had one already."""
     kept: Hidden[tuple[LeftSession, ...]]
-    """Sessions that cannot be calibrated under it, or whose file is lost; they keep what they have."""
+    """Sessions that cannot be calibrated under it, or whose file is lost; they keep their calibration."""
     revision: int
     """The latest model revision that any of them rests on; 0 is the baseline."""
     verdicts: Hidden[tuple[MovedVerdict, ...]] = ()
@@ -232,7 +232,7 @@ def _write_down(
 
 
 def recompute_beside(reception: Reception, now: datetime) -> None:
-    """Wakes whoever works in the background; where nobody does, it is done at once."""
+    """Wakes the background work; without any, the recomputation is done at once."""
     reception.ring()
     while not reception.is_dated_later:
         with reception.storage.database.reading() as store:

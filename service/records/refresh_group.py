@@ -46,7 +46,7 @@ def members_of(store: Store, group: Group) -> Members:
 
 
 def digest(members: Members) -> str:
-    """64 hexadecimal digits, the same for the same sessions."""
+    """The digest of sessions, 64 hexadecimal digits."""
     lines = (f"{m.session} {m.has_statistics}" for m in members.sessions)
     return sha256(RULE + "\n".join((*lines, str(members.left_out))).encode()).hexdigest()
 
@@ -60,7 +60,7 @@ def current(store: Store, group: Group) -> GroupAnswer | None:
 
 
 def rests_on_now(store: Store, group: Group, answer: GroupAnswer) -> bool:
-    """Whether an answer rests on the records of now: what was asked for again may."""
+    """Whether an answer rests on the current records; one that was requested again may."""
     return answer.rests_on == digest(members_of(store, group))
 
 

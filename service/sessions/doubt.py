@@ -47,7 +47,7 @@ class FileCorrection:
 
 @dataclass(frozen=True)
 class Doubt:
-    """One thing that cannot be as the file says."""
+    """One doubt about a file: a value that cannot be as stated."""
 
     problem: str
     """Beyond what physics allows, with the numbers."""
@@ -95,7 +95,7 @@ class DoubtKind(StrEnum):
     """Reason for a reservation, in the order in which reservations are listed."""
 
     RECORD = "record"
-    """The file says something else than what was done."""
+    """The file states something else than was done."""
     NOT_CHECKED = "not-checked"
     """No causes could be looked for."""
     PENDING = "pending"
@@ -115,7 +115,7 @@ class DoubtKind(StrEnum):
 @answer
 @dataclass(frozen=True)
 class Reservation:
-    """One thing that speaks against taking a verdict as it stands."""
+    """One reason against taking a verdict as it stands."""
 
     kind: DoubtKind
     """`record`: the file is wrong. `not-checked`: no causes could be looked for. `pending`: they are still being looked

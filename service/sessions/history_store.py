@@ -31,7 +31,7 @@ DECIDED = (
 )
 """The decision on a parameter, under the same model revision."""
 IS_JUDGED = ParameterRow.parameter.not_in(TERMS)
-"""Parameters that a calibration gives: the terms of noise stand beside them and are never judged."""
+"""Condition of the parameters of a calibration: the terms of noise are in the same table and are never judged."""
 
 
 class StoredPoint(NamedTuple):
@@ -78,7 +78,7 @@ POINT = (
 
 
 def point_record(row: StoredPoint, *, raw: bool = False) -> HistoryPoint:
-    """A stored parameter with what was decided of it, or, ``raw``, with what the whole block did left in."""
+    """A stored parameter with the decision on it, or, ``raw``, with the common motion of the whole block left in."""
     seen = _LatestPoint(row, raw)
     value, u = seen.value, seen.u
     lower, upper = _band(row, value, u)
@@ -159,7 +159,7 @@ class _LatestPoint:
 
     @property
     def _together(self) -> float:
-        """One sigma of what the whole block did, where that is left in."""
+        """One sigma of the common motion of the whole block, where that is left in."""
         return (self.row.common_sigma or 0.0) if self.raw else 0.0
 
 
@@ -191,7 +191,7 @@ class HistoryQuery:
     newest: bool = False
     """Whether offset and limit count from the newest point back."""
     raw: bool = False
-    """Whether what the whole block did is left in."""
+    """Whether the common motion of the whole block is left in."""
     noise: bool | None = False
     """Whether the terms of noise are wanted instead of the judged parameters; None for both. A parameter that is
     requested by its name is always included.
@@ -208,7 +208,9 @@ class History(Queries):
         self.insert_many(ParameterRow, [row for record, values in new for row in _rows(unit, record, values)])
 
     def drop(self, record: StoredSession) -> None:
-        """Takes out what a session gave under its model revision: a recording moves another calibration now."""
+        """Removes the judged parameters of a session under its model revision: a recording moves another calibration
+        now.
+        """
         conditions = (ParameterRow.session_id == record.id, ParameterRow.revision == record.revision)
         self._session.execute(delete(ParameterRow).where(*conditions, IS_JUDGED))
 

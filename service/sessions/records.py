@@ -160,7 +160,7 @@ class _Receipt:
 @answer
 @dataclass(frozen=True)
 class Receipt(Marks, _Receipt):
-    """The answer to an upload; of what was stored before everything is as it was."""
+    """The answer to an upload; for an earlier stored file it states the session as it is."""
 
 
 class SessionOrder(StrEnum):
@@ -299,7 +299,7 @@ class SensorNoiseSchema(BaseModel):
 
 
 class NoiseDocument(BaseModel):
-    """imu-noise/1: what the rests of a raw log say of its sensors."""
+    """imu-noise/1: noise of the sensors from the rests of a raw log."""
 
     format: str = Field(description="`imu-noise/1`.")
     rests: int = Field(description="How many rests.")

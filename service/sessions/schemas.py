@@ -50,7 +50,7 @@ def said_session(session: StoredSession) -> SaidSession:
 
 
 class TemperatureCorrectionSchema(BaseModel):
-    """A change from the reference without what temperature is worth in it, by the law of the unit's sessions before."""
+    """A change from the reference without the effect of temperature, by the law of the unit's sessions before."""
 
     model_config = ConfigDict(from_attributes=True)
 

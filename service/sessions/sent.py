@@ -11,7 +11,7 @@ from service.sessions.records import Marks
 
 @dataclass(frozen=True)
 class Replaced:
-    """The session that a corrected file supersedes, who says so and why."""
+    """The session that a corrected file supersedes, with the person and the reason."""
 
     session: str
     who: str

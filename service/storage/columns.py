@@ -74,7 +74,7 @@ class Sentence(TypeDecorator[str]):
 
 
 class LongSentence(Sentence):
-    """The same, declared as TEXT."""
+    """A message with its parts, declared as TEXT."""
 
     impl = Text
     cache_ok = True

@@ -77,7 +77,7 @@ class Files:
         return content
 
     def content(self, digest: str) -> bytes | Path:
-        """The same; for a long file its path, after its bytes were checked."""
+        """The bytes of a stored file; for a long file its path, after its bytes were checked."""
         with self._found(digest):
             if self.path(digest).stat().st_size <= IN_MEMORY:
                 return self.read(digest)

@@ -69,7 +69,7 @@ class UnitTypes(Queries):
         return unit_type
 
     def find(self, name: str) -> UnitType | None:
-        """The same; None where there is none of that name."""
+        """The type of a name; None where there is none."""
         row = self._session.execute(_with_tolerances().where(UnitTypeRow.name == name)).one_or_none()
         return None if row is None else unit_type_of(*row)
 

@@ -56,7 +56,7 @@ class ForeseenKind(StrEnum):
 @answer
 @dataclass(frozen=True)
 class ForeseenChange:
-    """One thing that a service would change."""
+    """One change by a service."""
 
     kind: ForeseenKind
     """`verdict`, `next-calibration` or `flag`."""

@@ -35,7 +35,7 @@ class Units(Queries):
         return self._session.scalar(select(UnitRow.simulated).where(UnitRow.serial == serial, HAS_SESSION))
 
     def set_simulated(self, serial: str, simulated: bool) -> None:
-        """Records what a unit's sessions are from now on."""
+        """Records whether a unit's sessions are simulated or measured from now on."""
         statement = update(UnitRow).where(UnitRow.serial == serial, UnitRow.simulated.is_not(simulated))
         self._session.execute(statement.values(simulated=simulated))
         self._session.info.pop(("simulated", serial), None)

@@ -114,7 +114,7 @@ After = Annotated[
 def list_uploads(
     store: Reading, text: FileName = None, refused: Refused = False, after: After = None, limit: Limit = 100
 ) -> UploadPage:
-    """Every file that came in, newest first, and what became of it; those that a job still works on apart."""
+    """Every file that came in, newest first, with its outcome; those in a running job are listed apart."""
     refusal = refusal_number(after or "")
     session = after if refusal is None else None
     query = ArrivalQuery(text, refused, after_session=session, after_refusal=refusal, limit=limit + 1)

@@ -93,7 +93,7 @@ class UploadsPage:
 
     @property
     def tally(self) -> dict[str, int]:
-        """Number of files by what became of them."""
+        """Number of files by outcome."""
         return {became: sum(o.became is became for o in self.outcomes) for became in Became}
 
 

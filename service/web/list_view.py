@@ -22,7 +22,7 @@ PLACE = LAST[1:]
 
 
 def one_of(known: Collection[str]) -> AfterValidator:
-    """Leaves out what nobody knows."""
+    """Leaves out unknown values."""
     return AfterValidator(lambda asked: asked if asked in known else "")
 
 
@@ -33,8 +33,9 @@ def address_of(path: str, asked: Mapping[str, object]) -> str:
 
 
 class ListView(BaseModel):
-    """A list that is narrowed and ordered by its address: every field is a part of it, in the order of the address.
-    Every field is empty where nothing is asked, and where it asks for what nobody knows."""
+    """A list that is filtered and ordered by its address: every field is a part of it, in the order of the address. A
+    field is empty where the address has no value for it, or an unknown one.
+    """
 
     model_config = ConfigDict(frozen=True)
     PATH: ClassVar[str]
@@ -53,7 +54,7 @@ class ListView(BaseModel):
     @field_validator("sort")
     @classmethod
     def known_order(cls, asked: str) -> str:
-        """The order that is asked for, or the first where nobody knows it."""
+        """The requested order, or the first where that is unknown."""
         return asked if asked.removeprefix("-") in cls.ORDERS else next(iter(cls.ORDERS))
 
     @field_validator("before")

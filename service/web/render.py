@@ -70,7 +70,7 @@ def _csrf_field(context: Context) -> Markup:
 
 @pass_context
 def _csrf_query(context: Context) -> str:
-    """The same, for the address of an upload."""
+    """The query of an upload's address with the CSRF token; empty without one."""
     csrf = _person(context).csrf
     return f"?csrf={csrf}" if csrf else ""
 

@@ -158,7 +158,7 @@ def download_result(id: Number, store: Reading, storage: StorageOf) -> Response:
 
 @router.post("/{id}/cancel", responses=errors(400, 403, 404, 409, 422))
 def cancel(id: Number, asked: Cancelling, storage: StorageOf, person: PersonOf, now: Now) -> JobAnswer:
-    """Stop a job between two pieces of its work. What was done stays."""
+    """Stop a job between two pieces of its work. Finished pieces stay."""
     return job_answer(cancel_job(storage, id, person, person.signs(asked.by or CREW), now))
 
 

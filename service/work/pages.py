@@ -229,6 +229,6 @@ def _outcome(store: Store, job: Job) -> FileOutcome:
 
 @router.post("/jobs/{id}/cancel")
 def cancel(id: Number, by: By, storage: StorageOf, person: PersonOf, now: Now) -> RedirectResponse:
-    """Stops a job between two pieces, and shows what was done."""
+    """Stops a job between two pieces, and shows its state."""
     cancel_job(storage, id, person, by, now)
     return RedirectResponse(f"/jobs/{id}", SEE_OTHER)

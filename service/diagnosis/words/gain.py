@@ -42,10 +42,11 @@ Errors = Mapping[str, Mapping[str, float]]
 
 
 def gain_in_words(gain: Gain, sensors: Sequence[str] = ()) -> str:
-    """``Held-out error of A2 halves: 14 → 7 µg (readings that took no part).``
+    """The gain of sensors, or of all where none is named: ``Held-out error of A2 halves: 14 → 7 µg (readings that took
+    no part).``
 
-    Of some sensors, or of all where none is named; empty where a version that stated none made it, and where what was
-    found leaves every reading's prediction as it was: a change since earlier sessions is none within the session.
+    Empty where a version that stated none made it, and where the findings leave every reading's prediction as it was: a
+    change since earlier sessions is none within the session.
     """
     parts = errors_in_words(gain.before.rms_by_sensor or {}, gain.after.rms_by_sensor or {}, sensors)
     return say("Held-out error {parts} (readings that took no part).", parts=parts) if parts else ""

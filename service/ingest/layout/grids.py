@@ -115,7 +115,7 @@ def number_of(cell: Cell, decimal: str) -> float | None:
 
 
 def is_nothing(cell: Cell) -> bool:
-    """Whether a cell is empty or says so."""
+    """Whether a cell is empty or holds a word for nothing."""
     return cell is None or (isinstance(cell, str) and cell.strip().casefold() in NOTHING)
 
 

@@ -213,7 +213,7 @@ def _track(
 
 
 def _point(row: ChangeRow | ReferenceRow, measured: Measured, dof: float | None, left: Left | None) -> Point:
-    """One session's change, without what a diagnosis explains of it."""
+    """One session's change, without the part that a diagnosis explains."""
     change, sigma = measured
     if left is None:
         return row.at, change, sigma, dof, row.temperature

@@ -120,7 +120,7 @@ class FleetPage:
     retired: Mapping[str, str]
     """Choices for retired units, in words."""
     uses: Mapping[str, str]
-    """Choices of what units may be used for, in words."""
+    """Choices of permitted use, in words."""
     dates: Mapping[str, str]
     """Choices of the next calibration's date, in words."""
     pending: str
@@ -155,7 +155,7 @@ def fleet_page(
     pending: str = "",
     follow: int | None = None,
 ) -> FleetPage:
-    """One page of units, and the number of all units by what they may be used for."""
+    """One page of units, and the number of all units by permitted use."""
     shown = Shown.of(view, units, lambda unit: unit.serial)
     return FleetPage(
         view=view,
@@ -202,7 +202,7 @@ def _concerns(
 
 
 def use_counts(used: Mapping[Use, int], view: FleetView) -> tuple[UseCount, ...]:
-    """Units by what they may be used for, those that must not be used first."""
+    """Numbers of units by permitted use, those that must not be used first."""
     uses = (use for use in sorted(Use, key=RANKS.__getitem__) if used.get(use) or use in COUNTED)
     return tuple(
         UseCount(

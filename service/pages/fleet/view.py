@@ -14,7 +14,7 @@ DUE = {"overdue": "Overdue", "30": "Due within 30 days", "90": "Due within 90 da
 RETIRED = {"only": "Retired units only", "too": "Retired units too"}
 """Choices for retired units, in words; without a choice they are left out."""
 USES = {use.value: word for use, word in WORDS.items()}
-"""Choices of what units may be used for, in words."""
+"""Choices of permitted use, in words."""
 RETIRED_OF = {"": False, "only": True, "too": None}
 
 

@@ -44,7 +44,7 @@ class WaitingKind(StrEnum):
 @answer
 @dataclass(frozen=True)
 class ToDo:
-    """One thing that waits for a person."""
+    """One piece of work that waits for a person."""
 
     kind: WaitingKind
     """`assigned-to-me`, `overdue`, `questioned-session`, `certificate`, `unassigned-flag` or `failed-work`."""

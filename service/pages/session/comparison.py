@@ -155,7 +155,7 @@ OTHER_METHOD = "They were measured in different ways, {first} and {second}."
 
 
 def in_common(first: StoredSession, second: StoredSession, services: Sequence[Service]) -> tuple[str, ...]:
-    """One sentence for each matter that there is something to say of."""
+    """Remarks on the two sessions, a sentence each."""
     said = [_stand(first.stand, second.stand), DIRECT]
     if services:
         said.append(say(SERVICED, days=joined(", ", dict.fromkeys(day_of(service.at) for service in services))))

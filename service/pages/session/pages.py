@@ -209,7 +209,7 @@ def _state(report: SessionReport) -> str:
 
 
 def parameters_of(calibration: Calibration) -> tuple[str, ...]:
-    """The parameters that a session speaks of."""
+    """The parameters that a session concerns."""
     return tuple(p for p in ALL_PARAMETERS if any(p in sensor.observable for sensor in calibration.sensors))
 
 
@@ -250,7 +250,7 @@ def reading_units(calibration: Calibration) -> dict[str, str]:
 
 
 def value_in_words(sensor: SensorCalibration, parameter: str, coverage: float, reading_unit: str) -> str:
-    """A parameter ± U, or that the session does not tell it; empty where it does not speak of it."""
+    """A parameter ± U, or that it is not observable; empty where the session does not concern it."""
     if not sensor.observable.get(parameter, False):
         return "not observable" if parameter in sensor.observable else ""
     if parameter == "axis":

@@ -69,7 +69,7 @@ class StandLine:
     flags: int
     """Number of open flags that find it at fault."""
     is_pending: bool
-    """Whether what stands do is being worked out with the latest records."""
+    """Whether the stands' conditions are being worked out with the latest records."""
 
 
 @dataclass(frozen=True)

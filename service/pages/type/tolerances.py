@@ -317,7 +317,7 @@ def _others(known: UnitType, watch: Watch) -> UnitType:
 
 
 def _differences(was: UnitType, now: UnitType) -> Iterator[tuple[str, dict[str, float]]]:
-    """Lines of the audit trail: what was done, and the numbers."""
+    """Lines of the audit trail: the action and the numbers."""
     for action, name in (("interval", "maximum_interval_days"), ("flag share", "flag_share")):
         before, after = getattr(was, name), getattr(now, name)
         if before != after:

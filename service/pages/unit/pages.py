@@ -171,7 +171,7 @@ class UnitView:
     next: NextCalibration | None
     """Outlook; None before a session was judged."""
     raw: bool
-    """Whether what the whole block did is left in."""
+    """Whether the common motion of the whole block is left in."""
     noise: NoisePart | None
     """Noise at rest; None where no session was sent as a raw log with rests."""
     group: GroupSection | None

@@ -60,7 +60,7 @@ class ParameterPage:
     serial: str
     head: ParameterHead
     raw: bool
-    """Whether what the whole block did is left in."""
+    """Whether the common motion of the whole block is left in."""
     meaning: str
     together: str
     """Common change of the whole block that is taken off, in a word; empty where there never is one."""

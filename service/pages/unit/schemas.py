@@ -86,7 +86,7 @@ class UnitInUse(SaidUnit):
 
 
 def units_in_use(store: Store, units: Sequence[UnitSummary], now: datetime) -> list[UnitInUse]:
-    """Units with what they may be used for, in their order."""
+    """Units with their permitted use, in their order."""
     uses = usable_of(store, units, now)
     return [UnitInUse(**said(unit), usable=uses[unit.serial].usable, use=uses[unit.serial].use) for unit in units]
 

@@ -27,7 +27,7 @@ class RecomputationInputs(Document, format="imu-recomputation/1"):
     reference: ReferenceSession | None
     stand_certificate: StandCertificate | None
     laws: tuple[tuple[str, str, TemperatureStep], ...] = ()
-    """Sensor, parameter, and what was taken off for temperature before it was judged."""
+    """Sensor, parameter, and the correction for temperature before the judgement."""
     temperatures: CoveredTemperatures | None = None
     """Temperatures covered by the calibration together with the unit's earlier sessions."""
 

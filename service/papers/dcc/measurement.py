@@ -219,7 +219,7 @@ def _deviation(decision: Decision, deviation: float) -> Element:
 
 
 def _limits(decision: Decision, unit: str) -> Iterator[Element]:
-    """Limits of the decision, and what was taken off before it."""
+    """Limits of the decision, and the correction before it."""
     step = decision.temperature_correction
     if step is not None:
         name = f"deviation at {step.temperature:.1f} °C, before the law of {step.sessions} sessions over temperature"

@@ -25,7 +25,7 @@ class Check:
     subject: str
     outcome: Outcome
     says: tuple[str, ...] = ()
-    """Sentences: what was found, every difference, or why it cannot be checked."""
+    """Sentences: the result, every difference, or the reason why it cannot be checked."""
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,7 @@ def raise_flag(store: Store, occasion: Occasion, concern: Concern) -> None:
 
 
 def see_again(store: Store, occasion: Occasion, known: Flag, concern: Concern) -> None:
-    """The open flag speaks of the latest session; one that was acknowledged is raised again where it got worse."""
+    """Updates an open flag by the latest session; an acknowledged one is raised again where it got worse."""
     worse = concern.severity > known.severity and known.state is FlagState.ACKNOWLEDGED
     Flags(store).put(
         known.id,

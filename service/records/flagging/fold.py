@@ -39,7 +39,7 @@ from service.storage.queries import Store
 from service.units.store import Units
 
 PASSES = (Verdict.PASS, Verdict.CONDITIONAL_PASS)
-"""Verdicts that speak for resolving one."""
+"""Verdicts by which a flag could be resolved."""
 WITHIN = "The session of {day} finds every parameter of {sensor} within its tolerance."
 ALL_WITHIN = "The session of {day} finds every sensor within its tolerance."
 NEW_REFERENCE = "{sensor} is now judged against the session of {day}."
@@ -148,8 +148,8 @@ def _of_finding(
     """The concerns of a finding. Where several causes are equally possible, all known ones must act on the sensor, or
     all on the stand.
 
-    A mere change since earlier sessions is left to the tolerances: they decide whether it matters. An effect that only
-    several sessions show together has a flag of its own. A course that sensors share is one matter, of the unit.
+    A mere change since earlier sessions is left to the tolerances: they decide whether it matters. An effect found only
+    in several sessions together has a flag of its own. A course that sensors share is one matter, of the unit.
     """
     if finding.over_sessions is not None:
         return
@@ -231,8 +231,9 @@ def _lives(sessions: Iterable[SessionEvidence], opened: Iterable[Flag]) -> Lives
 
 
 def _after(lives: Lives, evidence: FlagEvidence, at: Moment) -> Lives:
-    """A sensor out of tolerance is left to a person, who says why it is back; what a diagnosis found is closed by one
-    that no longer finds it."""
+    """The matters after one more session. A sensor out of tolerance is left to a person, who states why it is back; a
+    finding of a diagnosis is closed by one that no longer has it.
+    """
     shown = {c.key: Opened(c, at[1], at) for c in evidence.concerns if c.matter in MATTERS}
     clear = {(matter, place): why for matter, place, why in evidence.clear}
     gone = {key: why for key in lives.opened if (why := clear.get(key) or clear.get((key[0], ANY)))}

@@ -44,7 +44,7 @@ class _Fault:
 
 
 def settle_stand(store: Store, occasion: Occasion, stand: str) -> None:
-    """Brings the flag on what sessions find on a stand in line with all accepted sessions on it."""
+    """Brings the flag on a stand in line with the findings of all accepted sessions on it."""
     Stands(store).hold(stand)
     found, why = _fault(Derivations(store).evidence_on_stand(stand), stand)
     opened = _open(store, Matter.STAND, stand)
@@ -138,7 +138,7 @@ def _is_known(store: Store, stand: str, since: datetime) -> bool:
 
 
 def _close(storage: Storage, flag: Flag, now: datetime) -> None:
-    """A flag that no unit speaks for any more, or that one unit had of its own."""
+    """Closes a flag that no unit supports any more, or that one unit had of its own."""
     why = say(NO_LONGER_SHIFTED, stand=flag.place) if flag.scope is Scope.STAND else OF_STAND
     with storage.database.writing() as store:
         unit = Units(store).hold(flag.unit)

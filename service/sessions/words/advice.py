@@ -7,7 +7,7 @@ from service.kit.measures import number
 
 
 def what_to_add(calibration: Calibration) -> str:
-    """The rows that would tell what a session leaves open."""
+    """The rows that would determine the open parameters of a session."""
     flipped, add = calibration.residuals.flipped, calibration.fit.add
     if flipped is not None and len(set(flipped)) == 1:
         return "measure the same positions in the other run too"

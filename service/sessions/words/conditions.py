@@ -22,7 +22,7 @@ class Condition:
     """The mark in charts (Vega's name), the same as the icon's outline."""
     meaning: str
     reserved: bool = False
-    """Whether the verdict has a reservation; the mark beside it says so too."""
+    """Whether the verdict has a reservation; the mark beside it shows that too."""
 
     @property
     def rank(self) -> int:
@@ -117,7 +117,7 @@ def state_in_words(change: StateChange) -> str:
 LOOKING = "the search for causes is not finished"
 STILL_LOOKING = say("; {looking}", looking=LOOKING)
 MOST_TOLD = 2
-"""Reservations that a verdict names before the rest are counted: more are no longer read in one breath."""
+"""Most reservations that a verdict names before the rest are counted: more are hard to read at once."""
 
 
 def but(reservations: Reservations) -> str:

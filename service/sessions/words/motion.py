@@ -27,7 +27,7 @@ class MotionLine:
 def motions_in_words(
     motions: Sequence[CommonMotion], coverage: float, since: str = "since the reference"
 ) -> tuple[MotionLine, ...]:
-    """One sentence for each quantity that there is something to say of."""
+    """One sentence for each quantity with a common motion to report."""
     several = len({motion.kind for motion in motions}) > 1
     kind_words = {motion.kind: say(" of the {kind}s", kind=motion.kind) if several else "" for motion in motions}
     lines = [_line(motion, coverage, kind_words[motion.kind], since) for motion in motions]

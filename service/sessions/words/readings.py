@@ -40,7 +40,7 @@ def fit_in_words(calibration: Calibration) -> FitWords:
 
 
 def beside_screening(words: FitWords, calibration: Calibration) -> FitWords:
-    """The same, first what was found in the raw rows that the readings were made of."""
+    """The words with the findings in the raw rows of the readings put first."""
     return replace(words, warnings=(*(finding.message for finding in calibration.screening), *words.warnings))
 
 

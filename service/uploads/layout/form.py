@@ -194,7 +194,7 @@ def _column(fields: Mapping[str, str], k: int, before: Any) -> Json:
 
 
 def _session(fields: Mapping[str, str], before: Any, columns: list[Json]) -> Json:
-    """The facts with what was written; an empty field states nothing."""
+    """The facts with those from the form; an empty field states nothing."""
     session = json.loads(json.dumps(before if isinstance(before, dict) else {}))
     for key in (*TEXTS, *NUMBERS):
         if f"fact.{key}" in fields:
@@ -251,7 +251,7 @@ def _value(text: str) -> float | str | None:
 
 
 def _sensors(fields: Mapping[str, str], session: Mapping[str, Any], columns: list[Json]) -> list[Json]:
-    """One sensor per column of readings, with known facts and what was written."""
+    """One sensor per column of readings, with known facts and those from the form."""
     known = {s.get("name"): s for s in session.get("sensors") or () if isinstance(s, dict)}
     sensor_columns = [column for column in columns if column["as"] and is_sensor(column["as"])]
     axes = _arranged(fields, len(sensor_columns))

@@ -122,7 +122,7 @@ class LayoutPage:
     units: tuple[str, ...] = UNITS
     can_store: bool = False
     changed: bool = False
-    """Whether it was confirmed, but differs from what was shown."""
+    """Whether it was confirmed, but differs from the shown page."""
 
 
 def layout_page(carried: Carried, preview: Preview, form: LayoutForm, types: Sequence[str]) -> LayoutPage:

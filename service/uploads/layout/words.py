@@ -72,7 +72,7 @@ IN_FORM = {
     "another column is also read as {meaning}; remove one": "another column is also read as {meaning}; leave one out",
     "has no rows; give one row per reading": "no column is read as anything yet; choose them",
 }
-"""Templates of a file's faults that speak of its keys or its notation, and what a form says instead."""
+"""Templates of a file's faults in terms of its keys or its notation, and their wording in a form."""
 
 
 def said_on_page(problems: Sequence[Problem], mapping: Mapping[str, Any]) -> tuple[Problem, ...]:
