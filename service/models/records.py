@@ -173,7 +173,7 @@ class MovedVerdict:
     session: str
     """Id of the session."""
     started_at: datetime
-    """Start of the measurement, UTC."""
+    """Start of the measurement."""
     before: Verdict
     """Verdict before."""
     after: Verdict

@@ -103,7 +103,7 @@ class ChangeRow:
     """Measured value; None for an axis."""
     reference: float | None = None
     u: float | None = None
-    """Expanded uncertainty of the value."""
+    """Standard uncertainty of the value."""
     session: str = ""
 
 
@@ -118,7 +118,7 @@ class ReferenceRow:
     """°C"""
     session: str = ""
     u: Mapping[tuple[str, str], float] = field(default_factory=dict)
-    """Expanded uncertainties of its values that follow the temperature, by sensor and parameter."""
+    """Standard uncertainties of its values that follow the temperature, by sensor and parameter."""
 
 
 OWN = (

@@ -139,7 +139,7 @@ def unlooked(storage: Storage, id: str) -> tuple[Reservation, ...]:
 
 @dataclass(frozen=True)
 class Weighable:
-    """Changeable inputs of a weighing besides the diagnosis's session."""
+    """Inputs of a weighing that can change."""
 
     basis: str | None
     document: str | None

@@ -22,7 +22,7 @@ ID_DIGITS = 20
 
 
 ALL_PARAMETERS = (*PARAMETERS, "misalignment")
-"""Parameters with that of a turntable alone."""
+"""All parameters: these, and the one that only a turntable shows."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -145,6 +145,6 @@ def _every(routes: Iterable[Any]) -> Iterator[Any]:
 
 
 def _unexpected(request: Request, error: Exception) -> ProblemAnswer:
-    """The answer to an unexpected error, the one boundary for them."""
+    """Answers an unexpected error; the one boundary for them."""
     log.error("request failed", request_id=request.state.request_id, exc_info=error)
     return problem(500, UNEXPECTED, id=request.state.request_id)
