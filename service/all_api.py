@@ -36,7 +36,7 @@ from service.work import api as work
 
 
 def describe(app: FastAPI) -> None:
-    """Makes `/openapi.json` say of every error what the service really answers."""
+    """Completes `/openapi.json` with the answers that the service really gives to errors."""
 
     def description() -> Json:
         if app.openapi_schema is None:
@@ -54,12 +54,12 @@ def describe(app: FastAPI) -> None:
 
 
 def _as_routed(path: str) -> str:
-    """As the table of rules writes it, where the route table has a kind of parameter beside its name."""
+    """The path as in the table of rules, which states the kind of a parameter beside its name."""
     return next((route for _, route in NEEDED if route.replace(":path}", "}") == path), path)
 
 
 def _name_role(operation: Json, needed: Role | None, *, is_open: bool) -> None:
-    """Who may call it, and what others are told."""
+    """Adds the role that an operation needs, and its answers to those without it."""
     if needed is None:
         return
     operation["security"] = [{"token": []}, *([{}] if is_open else [])]
@@ -85,7 +85,7 @@ ROUTERS = (
     remarks.router, flags.webhooks_router, feeds.router, due.router, fleet.router, work.router,
     people.router,
 )  # fmt: skip
-"""Of every resource, in the order in which addresses are tried."""
+"""Routers of all resources, in the order in which addresses are tried."""
 
 
 def mount(app: FastAPI) -> None:

@@ -37,7 +37,7 @@ PARTS = (
     remarks, oidc_pages, before_pages, plan_pages, sessions, stands, types, arrivals_pages, help, work,
     assets,
 )  # fmt: skip
-"""Every file of addresses."""
+"""Modules with routes of pages."""
 
 
 def mount(app: FastAPI) -> None:

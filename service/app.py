@@ -1,4 +1,4 @@
-"""The one place where everything is joined."""
+"""The application, assembled from all subjects."""
 
 from collections.abc import AsyncIterator, Callable, Iterable, Iterator
 from contextlib import AbstractAsyncContextManager, asynccontextmanager
@@ -37,7 +37,7 @@ DESCRIPTION = (
 )
 """Heads the description of the API."""
 LAST_WORK = 5.0
-"""Seconds that a stopping service waits for the message at hand; the next start takes up what is left."""
+"""Seconds that a stopping service waits for the current message; the next start takes up the rest."""
 
 
 def utc_now() -> datetime:
@@ -51,9 +51,9 @@ def create_app(
     most: limits.Limits | None = None,
     filling: Filling | None = None,
 ) -> FastAPI:
-    """The service on the database and the folder that the settings name; the schema must be up to date. ``most``:
-    limits instead of those of the settings' machine, for tests; ``filling``: what is stored beside the first
-    requests."""
+    """The service on the database and the folder in the settings; the schema must be up to date. ``most``: limits
+    instead of those of the settings' machine, for tests; ``filling``: sessions to store beside the first requests.
+    """
     limits.use(most or limits.limits_of(settings))
     application = _application(settings, clock, {} if filling is None else {Filling: filling})
     app = FastAPI(
@@ -91,7 +91,9 @@ def _application(settings: Settings, clock: Callable[[], datetime], optional: di
 
 
 def _at_work(application: Application) -> Callable[[FastAPI], AbstractAsyncContextManager[None]]:
-    """From start to stop: work is done in the background, and the database is closed at the end."""
+    """The lifespan of the service: work is done in the background from start to stop, and the database is closed at the
+    end.
+    """
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
@@ -113,7 +115,7 @@ def _at_work(application: Application) -> Callable[[FastAPI], AbstractAsyncConte
 
 
 def _begin(application: Application, threads: Iterable[Thread], stop: Event) -> None:
-    """What is done in the background, after the sessions that are to be stored first."""
+    """Begins the work in the background, after the sessions that are to be stored first."""
     filling = application.find(Filling)
     if filling is not None:
         with Guard(application.metrics).alone("filling", ""):
@@ -123,7 +125,7 @@ def _begin(application: Application, threads: Iterable[Thread], stop: Event) -> 
 
 
 def _work(application: Application) -> Iterator[tuple[str, Callable[..., None], tuple[object, ...]]]:
-    """What is done in the background: its name, what does it, and what that needs."""
+    """The work in the background: name, function and arguments of each thread."""
     storage, clock, ways = application.storage, application.clock, _ways(application.settings)
     metrics, k = application.metrics, application.settings.coverage_factor
     for number in range(application.settings.diagnosis_workers):

@@ -22,7 +22,7 @@ from service.languages.language import Language
 
 
 class OnDemand(Mapping[str, Any]):
-    """The commands by name, each imported when it is looked up; a name that is none costs no import."""
+    """The commands by name, each imported when it is looked up; an unknown name costs no import."""
 
     def __getitem__(self, name: str) -> Any:
         return _command(name)
@@ -46,7 +46,7 @@ class Commands(TyperGroup):
         return list(CATALOGUE)
 
     def shell_complete(self, ctx: Any, incomplete: str) -> Any:
-        """What a shell offers for the start of a name: by a group of commands that only have a name and a line."""
+        """Completions of the start of a name, from a group of commands that only have a name and a line."""
         shown = [TyperCommand(name, help=entry.says) for name, entry in CATALOGUE.items()]
         listed = TyperGroup(name=self.name, commands=shown, params=self.params)
         return listed.shell_complete(typer.Context(listed), incomplete)

@@ -2,17 +2,17 @@
 
 ServiceError (500)
 ├── SignInError (401)         somebody must sign in first, or did so wrongly
-├── ForbiddenError (403)      the one who asked may not do this
+├── ForbiddenError (403)      the sender may not do this
 ├── NotFoundError (404)       no such session, unit or unit type
-├── ConflictError (409)       what is asked for does not fit what was done before
+├── ConflictError (409)       the request does not fit earlier actions
 ├── RefusedError (422)        an upload or a request that cannot be used; holds every problem with its place
 ├── TooLargeError (413)       an upload beyond the limit
 ├── TooOftenError (429)       wrong sign-ins in a row; try again after `retry_after`
 ├── NoSpaceError (507)        the disk is full; nothing was stored
-├── DamagedError (500)        a stored file is not what was uploaded, and is not given out
+├── DamagedError (500)        a stored file differs from the upload, and is not given out
 └── AwayError (503)           the database or the folder of files cannot be used; try again after `retry_after`
     ├── BusyError (503)       too much is being read at once; nothing was stored
-    └── PendingError (503)    what is asked for rests on what is still being made; ask again after `retry_after`
+    └── PendingError (503)    the answer rests on results still being made; ask again after `retry_after`
 """
 
 from http import HTTPStatus
@@ -38,13 +38,13 @@ class ServiceError(Exception):
 
 
 class SignInError(ServiceError):
-    """Somebody must sign in first, or did so wrongly."""
+    """The sender must sign in first, or did so wrongly."""
 
     status = HTTPStatus.UNAUTHORIZED
 
 
 class ForbiddenError(ServiceError):
-    """The one who asked may not do this."""
+    """The sender may not do this."""
 
     status = HTTPStatus.FORBIDDEN
 
@@ -56,7 +56,7 @@ class NotFoundError(ServiceError):
 
 
 class ConflictError(ServiceError):
-    """What is asked for does not fit what was done before."""
+    """The request does not fit earlier actions."""
 
     status = HTTPStatus.CONFLICT
 
@@ -107,7 +107,7 @@ class BusyError(AwayError):
 
 
 class PendingError(AwayError):
-    """What is asked for rests on what is still being made."""
+    """The answer rests on results that are still being made."""
 
     retry_after = 2
     """A larger session is diagnosed in that time."""

@@ -1,4 +1,4 @@
-"""What an operator sets, by environment variables that start with IMU_HEALTH_."""
+"""Settings by the operator, from environment variables that start with IMU_HEALTH_."""
 
 import os
 from collections.abc import Mapping
@@ -16,7 +16,7 @@ from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 from service.errors import ServiceError
 
 VERSION = version("imu-health")
-"""Of the program."""
+"""Version of the program."""
 
 
 def default_data_folder() -> Path:
@@ -43,7 +43,7 @@ RETIRED = {
     "OIDC_ISSUER": ("OIDC_NAME",),
     "OIDC_ROLES": ("OIDC_NEW_ACCOUNTS",),
 }  # fmt: skip
-"""Variables of earlier versions, under the one that stands in their place: whoever set one relied on it."""
+"""Variables of earlier versions, under their successor: whoever set one relied on it."""
 
 
 def retired(environment: Mapping[str, str]) -> dict[str, str]:
@@ -53,7 +53,7 @@ def retired(environment: Mapping[str, str]) -> dict[str, str]:
 
 
 class Origin(StrEnum):
-    """Where the value of a setting comes from."""
+    """Source of a setting's value."""
 
     DEFAULT = "default"
     ENVIRONMENT = "environment"
@@ -235,7 +235,7 @@ class Settings(BaseSettings):
         return self.data_folder / "files"
 
     def origin_of(self, name: str) -> Origin:
-        """Where the value of a setting comes from; an option of the command line comes before the environment."""
+        """The source of a setting's value; an option of the command line comes before the environment."""
         if name not in self.model_fields_set:
             return Origin.DEFAULT
         surroundings = Settings()

@@ -1,29 +1,29 @@
 """Every table of every subject, for migrations, backups and tests.
 
-What was measured and computed is written once; only summaries that can be made again are ever updated: `conditions`,
+Measurements and results are written once; only summaries that can be made again are ever updated: `conditions`,
 `outlooks`, `flags`, `jobs`, counts of the fleet, and of a session the revision in force, its verdict and its stage.
 
 unit_types ──< tolerance_revisions          stands ──< stand_certificates, append-only
     └──< units ──< services                   │
-           ├──< custody                       │      where units are and who has them, append-only
+           ├──< custody                       │      locations and custodians of units, append-only
            ├──< notes ──1 note_withdrawals    │
            ├──< flags ──┐                     │
            ├──< notices ┴──< deliveries >── webhooks
            ├──1 conditions                    │
            ├──1 outlooks, ──< histories
            └──< sessions >────────────────────┘
-                   ├──< calibrations          refusals   what was turned away
-                   ├──< parameters            audit      who did what when, append-only
+                   ├──< calibrations          refusals   refused uploads
+                   ├──< parameters            audit      actions of people, append-only
                    ├──< decisions
                    ├──< common_motions
                    ├──1 diagnoses, session_statistics
-                   ├──< reference_choices     record_states   what became of sessions and services, append-only
+                   ├──< reference_choices     record_states   states of sessions and services, append-only
                    ├──< certificates ──< certificate_signatures, certificate_files   papers issued, append-only
-                   └──< model_revisions ──< recomputations   causes that engineers accepted, and what they moved
-group_diagnoses                                what the sessions of a unit, a unit type or a stand show together
-work                                           what is still to be done in the background, and who is at it
-jobs                                           long work that somebody asked for, and how far it has come
-accounts ──< tokens, sign_ins, sign_in_links, identities   who may sign in, and what they show for it; attempts
+                   └──< model_revisions ──< recomputations   accepted causes, and their effects
+group_diagnoses                                joint diagnoses of the sessions of a unit, a unit type or a stand
+work                                           pending background work, and the process that does it
+jobs                                           requested long work, and its progress
+accounts ──< tokens, sign_ins, sign_in_links, identities   accounts, their credentials, and attempts to sign in
 """
 
 from service.diagnosis import tables as diagnosis
@@ -48,5 +48,5 @@ SUBJECTS = (
     audit, people, types, units, sessions, models, stands, diagnosis, queue, jobs, outlook, groups, flags, fleet,
     papers, uploads,
 )  # fmt: skip
-"""Where tables are defined."""
+"""Modules in which tables are defined."""
 METADATA = Base.metadata

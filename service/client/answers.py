@@ -18,7 +18,7 @@ Verdict = Literal["pass", "conditional-pass", "undecidable", "conditional-fail",
 
 @dataclass(frozen=True)
 class Reservation:
-    """What speaks against taking a verdict as it stands."""
+    """Reason against taking a verdict as it stands."""
 
     kind: str
     text: str
@@ -45,7 +45,7 @@ class Receipt(Said):
     id: str
     unit: str
     created: bool
-    """False where the same content was stored already."""
+    """Whether it is new; false where the same content was stored already."""
     state: str
     url: str
 
@@ -103,7 +103,7 @@ class Point:
     upper: float | None
     reference: float | None
     deviation: float | None
-    """From the reference: relative for scale, else SI."""
+    """Change from the reference: relative for scale, else SI."""
     expanded: float | None
     """U of the deviation."""
     tolerance: float | None
@@ -133,17 +133,17 @@ class Finding:
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """What the simulation gets wrong about a session."""
+    """Diagnosis of a session."""
 
     session: str
     unit: str
     state: str
     summary: str
     findings: tuple[Finding, ...]
-    """Strongest first."""
+    """Findings, strongest first."""
     unexplained: bool
     verdict_after: Verdict | None
-    """With the named causes in the model."""
+    """Verdict with the named causes in the model."""
     notes: tuple[str, ...]
     document: Json
 
@@ -170,7 +170,7 @@ class Usable:
     """Whether a unit may be used now."""
 
     usable: bool
-    """In doubt false."""
+    """Whether the unit may be used; false in doubt."""
     why: str
     reasons: tuple[str, ...]
     reservations: tuple[str, ...]

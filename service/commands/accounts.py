@@ -1,4 +1,4 @@
-"""`imu-health user` and `token`: accounts, for whoever has access to the database."""
+"""`imu-health user` and `token`: accounts, for people with access to the database."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager

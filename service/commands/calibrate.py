@@ -33,7 +33,7 @@ from service.sessions.words.curves import curves_in_words
 from service.sessions.words.readings import fit_in_words
 
 NOT_OBSERVABLE = "not observable"
-"""In place of a value that the session does not show."""
+"""Text in place of a value that the session does not observe."""
 Result = tuple[CalibrationSession, Calibration]
 
 
@@ -62,7 +62,7 @@ def calibration_view(session: CalibrationSession, calibration: Calibration) -> R
 
 
 def temperature_view(calibration: Calibration) -> Iterator[RenderableType]:
-    """What a thermal session shows of scale factors and biases."""
+    """Scale factors and biases over temperature in a thermal session."""
     curves = curves_in_words(calibration)
     if curves is None:
         return
@@ -107,7 +107,7 @@ def _axes_of_block(calibration: Calibration) -> RenderableType:
 
 
 def _cell(sensor: SensorCalibration, parameter: str, estimate: Estimate) -> str:
-    """Empty where the session does not concern the parameter."""
+    """The value with U; empty where the session does not concern the parameter."""
     if parameter not in sensor.observable:
         return ""
     if estimate.value is None:

@@ -14,7 +14,7 @@ class CommandEntry:
     home: str
     """Module below `service.commands`, and its function or group."""
     says: str
-    """The first paragraph of its help."""
+    """First paragraph of its help."""
 
 
 CATALOGUE = {

@@ -152,7 +152,7 @@ class ListOutput:
 
     @property
     def language(self) -> str:
-        """Of what is listed: JSON never depends on it."""
+        """Language of the list: JSON never depends on it."""
         return Language.ENGLISH.value if self.as_lines else output_language()
 
     def show(self, rows: Sequence[Any], view: Callable[[], RenderableType]) -> None:

@@ -84,7 +84,7 @@ class WritesByDefault(TyperGroup):
     """`backup FILE` is `backup write FILE`."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> Any:
-        """The first word is a command, or the file to write."""
+        """Parses arguments whose first word is a command, or the file to write."""
         if args and args[0] != "--help" and args[0] not in self.commands:
             args = ["write", *args]
         return super().parse_args(ctx, args)

@@ -38,7 +38,7 @@ COLOURS = {
 NEXT = slice(1, 3)
 """Lines of the ranking next to the named cause."""
 Result = tuple[CalibrationSession, Diagnosis | None]
-"""None for a programme without diagnosis."""
+"""A session with its diagnosis; None for a programme without one."""
 History = Annotated[
     list[Path] | None,
     typer.Option(help="An earlier session of the unit; repeat it for more, oldest first.", show_default=False),

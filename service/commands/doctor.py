@@ -63,7 +63,7 @@ class DoctorCheck:
     state: CheckState
     text: str
     remedy: str = ""
-    """What to do; empty where nothing is needed."""
+    """Advice; empty where nothing is needed."""
 
 
 def program() -> Iterator[DoctorCheck]:
@@ -91,7 +91,7 @@ def program() -> Iterator[DoctorCheck]:
 
 
 def _fault_of_library(requirement: Requirement) -> str:
-    """Why a library does not fit; empty where it does."""
+    """The reason why a library does not fit; empty where it does."""
     try:
         installed = version(requirement.name)
     except PackageNotFoundError:
@@ -192,7 +192,7 @@ def _remedy(fault: str) -> str:
 
 
 def _clock(opened: Database, now: datetime) -> Iterator[DoctorCheck]:
-    """This machine's clock against the server's, and against stored times."""
+    """Compares this machine's clock with the server's and with stored times."""
     remedy = say("Set the clocks of both machines, best by NTP.")
     server = opened.server_time()
     with opened.reading() as store:

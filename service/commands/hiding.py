@@ -58,10 +58,10 @@ Warming = Annotated[
 
 @dataclass(frozen=True)
 class HidingRequest:
-    """What is to be hidden."""
+    """Request for a hidden cause."""
 
     cause: Cause | None
-    """None for any."""
+    """Requested cause; None for any."""
     strength: float
     exact: bool
     """Whether that strength was requested."""
@@ -117,7 +117,7 @@ def hidden_in(
 
 
 def _remedy(cause: Cause, sessions: list[CalibrationSession]) -> str:
-    """``; give --warming 3`` for an option that provides what is missing."""
+    """The option that provides a missing condition: ``; give --warming 3``."""
     if "gravity" in cause.needs and sessions[-1].stand is not None:
         return "; give --programme arbitrary-orientations"
     if cause.kind == GYROSCOPE and all(sensor.kind != GYROSCOPE for sensor in sessions[-1].sensors):
@@ -135,7 +135,7 @@ def refuse(sentence: str) -> NoReturn:
 
 
 def write_answer(hidden: HiddenCause, file: Path, session: CalibrationSession, target: Path) -> None:
-    """What is hidden in ``file``, sensors by name and rows counted from 1."""
+    """Writes the cause hidden in ``file`` to ``target``, sensors by name and rows counted from 1."""
     target.parent.mkdir(parents=True, exist_ok=True)
     target.write_text(json.dumps(_answer(hidden, file, session), ensure_ascii=False), encoding="utf-8")
 
@@ -159,7 +159,7 @@ def _answer(hidden: HiddenCause, file: Path, session: CalibrationSession) -> Jso
 
 
 def _unit(unit: str, hidden: HiddenCause, session: CalibrationSession) -> str:
-    """Of a size at the input, which of a gyro is a rate."""
+    """The unit of a size at the input, which is a rate for a gyro."""
     on_gyro = any(session.sensors[i].kind == GYROSCOPE for i in hidden.sensors)
     return "rad/s" if on_gyro and unit == "m/s²" else unit
 

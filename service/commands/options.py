@@ -25,7 +25,7 @@ def settings_from(**options: Any) -> Settings:
 
 
 def checked(model: type[Model], /, **options: Any) -> Model:
-    """What the given options make; a usage error that names each invalid one."""
+    """The model made from the given options; a usage error that names each invalid one."""
     try:
         return model(**{name: value for name, value in options.items() if value is not None})
     except ValidationError as fault:

@@ -65,8 +65,9 @@ def _result(file: Path, reference: Path, motion: str) -> tuple[ParityResult, str
 
 
 def parity_view(result: ParityResult, started_at: str | None, away: str = "") -> RenderableType:
-    """The finding in a sentence, what temperature leaves of it, then every sensor: its apparent change, and the
-    detection limit; where one fails within the recording, by the part before."""
+    """The finding in a sentence, its limitation by temperature, then every sensor: its apparent change, and the
+    detection limit; where one fails within the recording, by the part before.
+    """
     faults, known = faults_in_words(result, started_at), before_faults(result)
     table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
     for heading in ("sensor", "visible", *(f"{name}{part}" for name in PARAMETERS for part in ("", ", seen from"))):

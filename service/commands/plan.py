@@ -38,7 +38,7 @@ from service.planning.words import (
 )
 
 PARAMETERS = ("scale", "bias", "quadratic", "axis")
-"""In the order of the table."""
+"""Parameters in the order of the table."""
 MOST_ORIENTATIONS = 200
 """Most orientations of a plan: nobody turns a block by hand more often."""
 
@@ -110,7 +110,7 @@ def soaks(text: str) -> tuple[float, ...]:
 def over_temperature(
     pattern: CalibrationSession, temperatures: tuple[float, ...], orientations: int, sigma: Array
 ) -> Calibration:
-    """What a thermal session of the block would tell; ``sigma`` (m,) of a reading at the input, m/s² (rad/s)."""
+    """Expected results of a thermal session of the block; ``sigma`` (m,) of a reading at the input, m/s² (rad/s)."""
     if not 1 <= orientations <= MOST_ORIENTATIONS:
         raise SessionError([Problem("--orientations", f"ask for 1 to {MOST_ORIENTATIONS}")])
     sensors = tuple(replace(sensor, bias_repeatability=0.0) for sensor in pattern.sensors)  # sigma holds it

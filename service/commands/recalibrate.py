@@ -40,7 +40,7 @@ class Processes:
     workers: int | None
     scheduler: str | None
     quiet: bool
-    """Without a progress bar."""
+    """Whether the progress bar is left out."""
 
 
 def recalibrate_units(

@@ -81,7 +81,7 @@ def _first_link(settings: Settings) -> str | None:
 
 
 def _demonstration(settings: Settings) -> Filling | None:
-    """What fills an empty database with the demonstration fleet; None where it holds units already."""
+    """The filling of an empty database with the demonstration fleet; None where it holds units already."""
     storage = Storage(open_database(settings.database), Files(settings.files))
     is_wanted = demo_fleet.is_wanted(storage)
     storage.database.close()
@@ -89,7 +89,7 @@ def _demonstration(settings: Settings) -> Filling | None:
         return None
 
     def store(advance: Callable[[], None]) -> None:
-        """Every session of the fleet."""
+        """Stores every session of the fleet."""
         filled = Storage(open_database(settings.database), Files(settings.files))
         try:
             demo_fleet.fill(filled, settings.coverage_factor, advance)

@@ -60,22 +60,22 @@ Noise = Annotated[
 FIRST_SESSION = datetime(2026, 1, 12, 9, 0, tzinfo=UTC)
 """Fixed, so that the same seed gives the same files wherever the clock is past them."""
 INTERVAL = timedelta(days=60)
-"""From one session to the next: two months, as the help says."""
+"""Time from one session to the next: two months, as the help says."""
 MOST_AFTER = 4
 """Sessions that are dated from the first date on; those of a longer series end with them."""
 FLIGHT_AFTER = timedelta(days=30)
-"""From a calibration to the recording in service that follows it."""
+"""Time from a calibration to the recording in service that follows it."""
 KNOWN = (TWO_AXIS_STAND, ARBITRARY_ORIENTATIONS, IN_SERVICE, ROTATION_ALIGNMENT, RATE_TABLE, THERMAL)
 """Programmes that can be simulated."""
 STILL: dict[str, Callable[[CalibrationSession, np.random.Generator], CalibrationSession]] = {
     ARBITRARY_ORIENTATIONS: lambda schedule, _: schedule,
     THERMAL: thermal_schedule,
 }
-"""What is made of still orientations, by programme."""
+"""Programmes of still orientations, with the function that makes their schedule."""
 ON_TURNTABLE = (ROTATION_ALIGNMENT, RATE_TABLE)
 """Programmes of a turntable, which has no two-axis stand's geometry."""
 STAND_ERRORS = ("theta_x", "theta_y", "alpha")
-"""That stay the same over a session and are told with the truth."""
+"""Errors of the stand that stay the same over a session and are written with the truth."""
 DRIFT = re.compile(r"[AG](?P<sensor>\d+)\.(?P<parameter>\w+)=(?P<amount>[-+]?\d+(\.\d*)?)")
 """SENSOR.PARAMETER=AMOUNT."""
 LEVER = re.compile(r"A(?P<sensor>[1-3])=(?P<x>[-+]?\d+(\.\d*)?),(?P<y>[-+]?\d+(\.\d*)?)")
@@ -104,12 +104,12 @@ class Simulated:
     """One simulated session and everything that is true of it."""
 
     session: CalibrationSession
-    """Its pulses are not counted yet."""
+    """Session before its pulses are counted."""
     truth: SensorParameters | Truth
     draw: StandDraw | None
-    """None without a stand."""
+    """Errors of the stand; None without a stand."""
     law: ThermalLaw | None = None
-    """What temperature does; None where a programme holds it."""
+    """Effect of temperature; None where a programme holds it."""
 
 
 def read_drift(text: str) -> ParameterMove:
@@ -226,7 +226,7 @@ def _write(made: Iterator[Simulated], wish: HidingRequest | None, seed: int, sta
 
 
 def back_from_future(sessions: int, programme: str, now: datetime) -> timedelta:
-    """By how much sessions must be dated earlier for none to lie after ``now``: as a rule not at all."""
+    """Shift of all sessions to earlier dates so that none lies after ``now``: as a rule zero."""
     last = _measured(sessions - 1, sessions) + (FLIGHT_AFTER if programme == IN_SERVICE else timedelta())
     return INTERVAL * max(0, ceil((last - now) / INTERVAL))
 
@@ -293,7 +293,7 @@ def _dated(session: CalibrationSession, at: datetime) -> CalibrationSession:
 
 
 def _truth(file: Path, simulated: Simulated) -> Json:
-    """What the file should be found to say, SI; and the stand's errors that a calibration cannot know."""
+    """The truth that the file should show, SI, and the stand's errors that a calibration cannot know."""
     head = {"format": "imu-truth/1", "file": str(file), "unit": simulated.session.unit}
     if isinstance(simulated.truth, Truth):
         return {**head, **_turntable(simulated.truth)}

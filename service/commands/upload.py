@@ -86,7 +86,7 @@ class _WatchedFile:
         return self.file.fileno()
 
     def seek(self, place: int) -> int:
-        """To its beginning, before it is sent."""
+        """Returns to the beginning before it is sent."""
         return self.file.seek(place)
 
 
@@ -133,7 +133,7 @@ COLOURS = {
     Verdict.CONDITIONAL_FAIL: "dark_orange",
     Verdict.FAIL: "red",
 }
-"""Of the verdicts, as on the pages."""
+"""Colours of the verdicts, as on the pages."""
 
 
 Wait = Annotated[
@@ -176,7 +176,7 @@ def upload_files(
 
 
 UNFINISHED, STORED, BEFORE = "unfinished", "stored", "before"
-"""What became of a file that did not fail."""
+"""Outcomes of a file that did not fail."""
 
 
 def _outcome(answer: Json) -> str:

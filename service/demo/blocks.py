@@ -23,9 +23,9 @@ ACCELEROMETER_SCALE = 0.12
 GYRO_SCALE = 1 / (0.6 * ARCSEC)
 """Pulses per rad: 0.6″ a pulse."""
 COUNT_TIME = 100.0
-"""s."""
+"""Time over which pulses are counted, s."""
 ELEVATION_DEG = 40.0
-"""Of the head, degrees, of the demonstration fleet and of `imu-health simulate`."""
+"""Elevation of the head, degrees, in the demonstration fleet and in `imu-health simulate`."""
 MICRO_G = 9.80665e-6
 """m/s², at standard gravity."""
 BIAS_REPEATABILITY = {ACCELEROMETER: 2e-5 / 3 * STANDARD_GRAVITY, GYROSCOPE: 0.04 / 3 * np.pi / 180 / 3600}
@@ -84,9 +84,9 @@ def norms(kind: str, sensors: int) -> Array:
 
 
 SENSORS = 6
-"""On every cone, as in the published block."""
+"""Sensors on every cone, as in the published block."""
 TYPE_NAME = {ACCELEROMETER: "RA-6", GYROSCOPE: "RG-6"}
-"""By kind of sensor."""
+"""Unit type by kind of sensor."""
 TOLERANCES = {
     ACCELEROMETER: Tolerances(
         scale=100e-6, bias=50e-6 * STANDARD_GRAVITY, quadratic=40e-6 / STANDARD_GRAVITY, axis=20 * ARCSEC
@@ -121,10 +121,10 @@ DEGREE_PER_HOUR = np.pi / 180 / 3600 / EARTH_RATE
 
 @dataclass(frozen=True)
 class ParameterMove:
-    """How much one parameter of one sensor moves: ppm, µg (gyro: °/h), µg/g², arcsec."""
+    """Change of one parameter of one sensor: ppm, µg (gyro: °/h), µg/g², arcsec."""
 
     sensor: int
-    """Counted from 0."""
+    """Number of the sensor, from 0."""
     parameter: str
     amount: float
 

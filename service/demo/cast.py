@@ -1,4 +1,4 @@
-"""Who is in the demonstration fleet and what happens to each unit. Amounts: ppm, µg (gyro: °/h), µg/g², arcsec."""
+"""Members of the demonstration fleet and the events of each unit. Amounts: ppm, µg (gyro: °/h), µg/g², arcsec."""
 
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -12,7 +12,7 @@ START = datetime(2023, 11, 14, 8, 30, tzinfo=UTC)
 END = datetime(2026, 11, 12, 8, 30, tzinfo=UTC)
 """Fixed, so that the demonstration is always the same."""
 YEARS = 3.0
-"""From start to end."""
+"""Years from start to end."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Jump:
 
 @dataclass(frozen=True)
 class Intervention:
-    """A service on the unit, and what it changed."""
+    """A service on the unit, with its effects."""
 
     at: datetime
     kind: str
@@ -51,7 +51,7 @@ class Intervention:
 
 @dataclass(frozen=True)
 class DemoHandling:
-    """What somebody did about a flag on a sensor."""
+    """Handling of a flag on a sensor."""
 
     at: datetime
     sensor: str
@@ -90,15 +90,15 @@ class DemoMember:
     noise: dict[int, float] = field(default_factory=dict)
     """Factor on the reading noise of single sessions, by their number from 0; −1 is the last."""
     hidden: DemoEffect | None = None
-    """What the simulation gets wrong about the latest session."""
+    """Effect hidden in the latest session."""
     programme: str = TWO_AXIS_STAND
-    """How it is measured; on a turntable a drift's sensor is the axis of the accelerometers."""
+    """Programme of measurement; on a turntable a drift's sensor is the axis of the accelerometers."""
     flown: ParameterMove | None = None
-    """What a recording in service, made after the last session, shows."""
+    """Move shown by a recording in service that is made after the last session."""
 
     @property
     def files(self) -> int:
-        """How many there are of it."""
+        """Number of the unit's files."""
         return self.sessions + (self.flown is not None)
 
 
@@ -114,7 +114,7 @@ def _replaced(sensor: int, at: datetime) -> Intervention:
 GAINS = {0: 72.0, 3: -58.0}
 """Sensors of BA-109 whose amplifiers drift, and how far until they are adjusted, ppm."""
 ADJUSTED = datetime(2025, 2, 11, 9, 0, tzinfo=UTC)
-"""When the unit that shows a service was adjusted."""
+"""Time at which the unit that shows a service was adjusted."""
 UNTIL_ADJUSTED = (ADJUSTED - START).days / 365.25
 """Years after the start."""
 
@@ -126,10 +126,13 @@ def _adjusted() -> Intervention:
 
 
 ECCENTRIC_STAND, ECCENTRICITY = "ODG-2", (3.6e-6, -2.0e-6)
-"""Whose angle scale sits off centre, and by how much: along cos β and sin β, rad. Below an arcsecond, and below what
-any session sees."""
+"""Stand whose angle scale sits off centre, and the eccentricity along cos β and sin β, rad. It is below an arcsecond,
+and too small for any single session to show.
+"""
 WAVY_STAND, WAVE = "ODG-1", 4.4e-6
-"""Whose head is turned by sin 3β, rad, as three feet of a table would: no cause of the catalogue."""
+"""Stand whose head is turned by sin 3β, and the amplitude, rad, as three feet of a table would: no cause of the
+catalogue.
+"""
 CUBIC = 4.4e-8
 """(m/s²)⁻² of every accelerometer: a property of their design, 4.2 µg/g³."""
 

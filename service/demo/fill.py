@@ -38,9 +38,9 @@ from service.units.remarks_store import Notes
 from service.uploads.receive import upload
 
 UPLOADED_AFTER = timedelta(hours=3)
-"""From the session to its upload; the demonstration has its own clock, so that it is always the same."""
+"""Time from the session to its upload; the demonstration has its own clock, so that it is always the same."""
 Done = Intervention | DemoHandling | Remark
-"""What people do between sessions."""
+"""Acts of people between sessions."""
 FILES = sum(member.files for member in CAST)
 """Sessions of the whole fleet."""
 
@@ -53,7 +53,7 @@ def is_wanted(storage: Storage) -> bool:
 
 
 def fill(storage: Storage, coverage_factor: float, advance: Callable[[], None]) -> None:
-    """Uploads every session of every member; ``advance`` is called once a session. What is there already stays."""
+    """Uploads every session of every member; ``advance`` is called once a session. Existing sessions stay."""
     with storage.database.writing() as store:
         for kind in (ACCELEROMETER, GYROSCOPE):
             UnitTypes(store).add_once(unit_type(kind), START)
@@ -62,7 +62,7 @@ def fill(storage: Storage, coverage_factor: float, advance: Callable[[], None]) 
 
 
 def _upload_member(storage: Storage, member: DemoMember, coverage_factor: float, advance: Callable[[], None]) -> None:
-    """One unit's life: sessions in order, and what people did in between."""
+    """Uploads one unit's life: sessions in order, and people's acts in between."""
     waiting: list[Done] = [*member.services, *member.handled, *member.remarks]
     waiting.sort(key=lambda done: done.at)
     files = list(files_of(member))
@@ -112,11 +112,11 @@ def _handle(storage: Storage, serial: str, done: DemoHandling) -> None:
 LIMIT = {ACCELEROMETER: {"scale": 100.0, "bias": 50.0, "axis": 20.0}, GYROSCOPE: {"scale": 3000.0, "bias": 0.03}}
 """Tolerances of what may change: ppm; µg or °/h; arcsec."""
 SHARES = {"stable": 0.70, "drift": 0.14, "jump": 0.05, "serviced": 0.04, "noisy": 0.01, "overdue": 0.04, "new": 0.02}
-"""What becomes of a unit, by its share of the fleet."""
+"""Shares of the fleet by the course of a unit's life."""
 REGISTERED, RETIRED = 0.02, 0.02
 """Shares of the fleet that were never measured, and that are retired."""
 SESSIONS = (3, 6)
-"""Of a unit, from and to."""
+"""Fewest and most sessions of a unit."""
 GYROS = 0.2
 """Share of the units that are gyros."""
 LOCATIONS = ("Hangar 1", "Hangar 2", "Line station north", "Line station south", "Laboratory", "Store")
@@ -147,7 +147,7 @@ class ManyPlan:
 
 
 def plan(units: int, seed: int) -> ManyPlan:
-    """Who is in a fleet of so many units; the same for the same seed."""
+    """The plan of a fleet of so many units; the same for the same seed."""
     rng = np.random.default_rng(seed)
     kinds = [GYROSCOPE if rng.random() < GYROS else ACCELEROMETER for _ in range(units)]
     serials = [f"{'FG' if kind == GYROSCOPE else 'FA'}-{number:05d}" for number, kind in enumerate(kinds, 1)]

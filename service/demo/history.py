@@ -1,4 +1,4 @@
-"""A member's life: when it is measured, what its sensors truly are then, and the session files that come of it."""
+"""A member's life: times of measurement, true parameters at each, and the session files."""
 
 import json
 from collections.abc import Iterator
@@ -59,7 +59,9 @@ OPERATORS = ("A. Lindqvist", "K. Ito", "M. Okafor", "R. Duarte")
 POSITIONS = (12, 24)
 """A run: a short session and a full one."""
 STEEP_DEG = 65.0
-"""Of short sessions on the eccentric stand: at one elevation an eccentric scale looks like a wobbling axis."""
+"""Elevation of short sessions on the eccentric stand, degrees: at one elevation an eccentric scale looks like a
+wobbling axis.
+"""
 NOISE = {ACCELEROMETER: 3e-6, GYROSCOPE: 0.3}
 """One sigma of an averaged reading: V; pulses."""
 WANDER = {
@@ -69,15 +71,15 @@ WANDER = {
 """One sigma of every sensor's random walk in a year, dimensionless."""
 TURNED_STAND, TURNED_AT = "ODG-3", START + 2.2 * YEAR
 TURN = np.array([4.0, -7.0, 11.0]) * ARCSEC
-"""By which the seat of that stand has turned every block since then: nobody noticed."""
+"""Turn of every block since then by the seat of that stand, rad: nobody noticed."""
 FLOWN_AFTER = timedelta(days=8, hours=3)
-"""From a calibration to the recording in service."""
+"""Time from a calibration to the recording in service."""
 TURNTABLE_TYPE = "RT-3"
-"""Of the unit that is aligned on a turntable."""
+"""Type of the unit that is aligned on a turntable."""
 AROUND_SERVICE = timedelta(days=4)
-"""From a session as found to the service, and from there to the session as left."""
+"""Time from a session as found to the service, and from there to the session as left."""
 NOTES = "Simulated session of the demonstration fleet."
-"""In every file, so that none passes for a measurement."""
+"""Note in every file, so that none passes for a measurement."""
 
 
 @dataclass(frozen=True)
@@ -149,7 +151,7 @@ def _dates(member: DemoMember, rng: np.random.Generator) -> list[datetime]:
 
 
 def _stage(member: DemoMember, at: datetime) -> str | None:
-    """As found before a service that is measured around, as left after it."""
+    """Stage of a session: as found before a measured service, as left after it; None otherwise."""
     stages = dict.fromkeys((s.at - AROUND_SERVICE for s in member.services if s.measured), AS_FOUND)
     stages |= dict.fromkeys((s.at + AROUND_SERVICE for s in member.services if s.measured), AS_LEFT)
     return stages.get(at)
@@ -163,7 +165,7 @@ def _walk(kind: str, dates: list[datetime], rng: np.random.Generator) -> Array:
 
 
 def _changes(member: DemoMember, at: datetime) -> tuple[ParameterMove, ...]:
-    """What has drifted and what was done to the unit up to a time."""
+    """The drifts, jumps and service adjustments of the unit up to a time."""
     years = (at - START) / YEAR
     drifted = tuple(
         replace(drift.change, amount=drift.change.amount * (min(years, drift.ends) / YEARS) ** drift.power)

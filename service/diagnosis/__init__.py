@@ -1,1 +1,1 @@
-"""What the simulation gets wrong about a session."""
+"""Diagnosis of a session: causes of the differences between its readings and the simulation."""

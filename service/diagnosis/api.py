@@ -1,4 +1,4 @@
-"""Diagnoses: what the simulation gets wrong about a session, and the acceptance of a named cause."""
+"""Diagnoses of sessions, and the acceptance of a named cause."""
 
 import json
 
@@ -24,12 +24,12 @@ RETRY_AFTER = "2"
 PENDING: dict[int | str, Json] = {
     202: {"model": PendingDiagnosis, "description": "Still being made; ask again after Retry-After seconds."}
 }
-"""How OpenAPI describes the answer while a diagnosis is being made."""
+"""OpenAPI description of the answer while a diagnosis is being made."""
 
 
 @router.get("/{id}/diagnosis", responses={**PENDING, **errors(404, 422)}, response_model=DiagnosisDocument)
 def read_diagnosis(id: SessionId, reader: ReaderOf) -> Response | DiagnosisDocument:
-    """What the simulation gets wrong about the session, imu-diagnosis/1; waits some seconds for one being made."""
+    """The session's diagnosis, imu-diagnosis/1; waits some seconds for one being made."""
     found = reader.read(id)
     if found is None:
         return JSONResponse({"session": id, "status": "pending"}, 202, {"Retry-After": RETRY_AFTER})

@@ -139,7 +139,7 @@ def _spec_of(across: Across, measure: Measure, largest: float, *, wider: bool) -
 
 @cache
 def _spec(name: str, title: str, *, wider: bool) -> Json:
-    """With blanks for the unit and the ranges."""
+    """The specification, with blanks for the unit and the ranges."""
     x = alt.X("x:Q", title=title, axis=alt.Axis(**ticks(name)), scale=x_scale(nice=False, zero=False))
     scale = y_scale()
     y = y_axis(scale)
@@ -158,7 +158,7 @@ def _spec(name: str, title: str, *, wider: bool) -> Json:
 
 
 def _marks(base: "alt.Chart", y: "alt.Y", model: str) -> "alt.Chart":
-    """Before as empty marks, after as full ones; direct round, flipped pointed."""
+    """Marks of one model: before empty, after full; direct round, flipped pointed."""
     first = model == MODELS[0]
     colour = "var(--second)" if first else "var(--accent)"
     empty, full = {"filled": False, "strokeWidth": 1.4}, {"filled": True, "stroke": "var(--card)", "strokeWidth": 0.5}
@@ -191,7 +191,7 @@ def across_of(course: Course, residuals: Residuals) -> Across:
 
 
 def measure_of(course: Course, component: str) -> Measure:
-    """Of what changes: an angle, or relative; components of one unit share it."""
+    """The measure of a component: an angle, or relative; components of one unit share it."""
     is_size = component == SIZE
     values = [
         abs(row[k]) for row in course.values for k, other in enumerate(course.components) if (other == SIZE) == is_size
@@ -254,7 +254,7 @@ def _filled(across: Across, measure: Measure, largest: float, *, is_joined: bool
 
 @cache
 def _course_spec(name: str, title: str, *, is_joined: bool) -> Json:
-    """With blanks for the unit and the ranges; ``is_joined``: neighbours are joined by a line."""
+    """The specification, with blanks for the unit and the ranges; ``is_joined``: neighbours are joined by a line."""
     x = alt.X("x:Q", title=title, axis=alt.Axis(**ticks(name)), scale=x_scale(nice=False))
     colour = alt.Color("run:N", legend=None, scale=alt.Scale(domain=RUNS, range=["var(--accent)", "var(--second)"]))
     base = alt.Chart(alt.NamedData(name=DATA_FORM)).encode(x=x, y=y_axis(y_scale()), color=colour)

@@ -1,4 +1,4 @@
-"""What naming the causes is worth, and what moved because of it."""
+"""Gain from naming the causes, and the parameters that it moved."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -33,7 +33,7 @@ class GainRow:
 
 @dataclass(frozen=True)
 class MovedParameterLine:
-    """How far one sensor's parameters moved because the causes are in the model."""
+    """Moves of one sensor's parameters because the causes are in the model."""
 
     sensor: str
     scale: str
@@ -46,11 +46,11 @@ class GainView:
     """The gain of the extended model."""
 
     held_out: str
-    """What took no part in the fit: ``positions``, ``turns``."""
+    """Readings without part in the fit: ``positions``, ``turns``."""
     is_none: bool
     """Whether the named causes show elsewhere than in the prediction of held-out readings."""
     rows: tuple[GainRow, ...]
-    """What of this session took no part in the fit."""
+    """Scores of the readings of this session without part in the fit."""
     earlier_rows: tuple[GainRow, ...]
     """The earlier session, with the size found in this one; empty where the causes cannot have acted there."""
     earlier_at: datetime | None
@@ -90,7 +90,7 @@ def _kinds(gain: Gain, calibration: Calibration) -> tuple[str, ...]:
 
 
 def _at(started_at: str | None) -> datetime | None:
-    """When a session began; None where its file does not say."""
+    """The start of a session; None where its file does not state it."""
     return None if started_at is None else moment(started_at)
 
 
@@ -114,7 +114,7 @@ def _rows(before: Score, after: Score, kinds: Sequence[str]) -> tuple[GainRow, .
 
 
 def _rms(before: Score, after: Score, kind: str, *, several: bool) -> GainRow:
-    """Of one kind of sensor; earlier versions stated that of the leading kind alone."""
+    """The error of one kind of sensor; earlier versions stated that of the leading kind alone."""
     rms = tuple(score.rms_by_kind.get(kind, nan if several else score.rms) for score in (before, after))
     measure = deviation_measure(kind, "bias", max((x for x in rms if isfinite(x)), default=0.0))
     who = say(" of {kind}s", kind=kind) if several else ""

@@ -69,41 +69,41 @@ class RevisionView:
     name: str
     subject: str
     state: str
-    """What it is to this session's calibration."""
+    """State of the cause in this session's calibration."""
     withdrawn: ModelRevision | None
 
 
 @dataclass(frozen=True)
 class EvidenceView:
-    """What a diagnosis rests on: absent while it is pending, and where none could be made."""
+    """Evidence of a diagnosis; absent while it is pending, and where none could be made."""
 
     wrong_errors: tuple[str, ...]
-    """Which stated standard errors the readings contradict, a sentence each; empty where the headline says it."""
+    """Stated standard errors that the readings contradict, a sentence each; empty where the headline says it."""
     findings: tuple[FindingView, ...]
     shared: tuple[SharedView | None, ...]
     """The course of every finding in turn, where its sensors share one."""
     structures: tuple[StructureView, ...]
     courses: tuple[CourseView, ...]
-    """Of the applied vector."""
+    """Courses of the applied vector."""
     charts: tuple[ChartSet, ...]
     bands: str
-    """What is drawn of the noise."""
+    """Explanation of the drawn bands of noise."""
     beta: bool
     """Whether the session has angles and runs of a stand."""
     left_out: int
     """Sensors that are not drawn."""
     residuals: ResidualTable
     gains: tuple[str, ...]
-    """What every finding in turn gains for its sensors, in one sentence."""
+    """Gain of every finding in turn for its sensors, in one sentence."""
     gain: GainView | None
-    """None where no cause is named."""
+    """Gain of the named causes; None where no cause is named."""
     seen: tuple[SeenCause, ...]
     blind: tuple[BlindCauses, ...]
     notes: tuple[str, ...]
 
 
 FOLLOW = 3
-"""Seconds: the page itself waits for a while."""
+"""Seconds until the page looks again: the page itself waits for a while."""
 
 
 @dataclass(frozen=True)
@@ -121,7 +121,7 @@ class DiagnosisPage:
     scopes: tuple[tuple[str, str], ...]
     made: str
     gain: str
-    """What all causes that are named gain, in one sentence."""
+    """Gain of all named causes, in one sentence."""
 
 
 def diagnosis_page(report: DiagnosisReport) -> DiagnosisPage:
@@ -217,7 +217,7 @@ def _revision(revision: ModelRevision, session: StoredSession, known: Sequence[M
 
 
 def _scopes(session: StoredSession) -> tuple[tuple[str, str], ...]:
-    """Whose model a cause can be accepted into."""
+    """Scopes of models into which a cause can be accepted, in words."""
     units = (
         (Scope.UNIT.value, say("this unit, {unit}", unit=session.unit)),
         (Scope.UNIT_TYPE.value, "all units of its type"),
@@ -241,7 +241,7 @@ router = APIRouter(include_in_schema=False)
 
 @router.get("/sessions/{id}/diagnosis")
 def show_diagnosis(request: Request, store: Reading, id: Key, reader: ReaderOf) -> HTMLResponse:
-    """What the simulation gets wrong about the session."""
+    """Shows the diagnosis of the session."""
     page = diagnosis_page(diagnosis_report(store, id, reader.read(id, patience=PAGE_PATIENCE)))
     return render(request, "diagnosis.html", page)
 
@@ -259,7 +259,7 @@ def accept(
     note: FormLines = "",
     again: Annotated[bool, Form()] = False,
 ) -> RedirectResponse:
-    """Accepts a named cause, and shows what it gains and, where stored sessions are computed again, what moves."""
+    """Accepts a named cause, and shows its gain and, where stored sessions are computed again, the results."""
     made = accept_model(reception.storage, reader.made(id), NewModel(cause, scope, by, note, again=again), now)
     recompute_beside(reception, now)
     return RedirectResponse(f"/models/{made.id}", SEE_OTHER)

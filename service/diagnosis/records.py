@@ -1,4 +1,4 @@
-"""What the simulation gets wrong about a stored session, and a diagnosis that is still to be made."""
+"""Stored diagnosis of a session, and its page's contents."""
 
 from dataclasses import dataclass, field
 from datetime import datetime
@@ -15,8 +15,9 @@ from service.sessions.words.noise import is_tenfold
 
 
 def state_of(diagnosis: Diagnosis) -> DiagnosisState:
-    """What people hear first: a name, a choice, structure without a name, or nothing; undecided where no reading is
-    left over to judge by."""
+    """The state of a diagnosis: a named cause, a choice, structure without a name, or nothing; undecided where no
+    reading is left over to judge by.
+    """
     if diagnosis.findings:
         return DiagnosisState.UNDECIDED if diagnosis.findings[0].alternatives else DiagnosisState.NAMED
     if diagnosis.unexplained or is_tenfold(diagnosis.noise):
@@ -26,7 +27,7 @@ def state_of(diagnosis: Diagnosis) -> DiagnosisState:
 
 @dataclass(frozen=True)
 class Diagnosed(Document, earlier=lambda old: {"structures": [], "noise": [], "notes": []} | old):
-    """What imu-diagnosis/1 says; a number that is null there, because it was not finite, is NaN."""
+    """Contents of imu-diagnosis/1; a number that is null there, because it was not finite, is NaN."""
 
     findings: tuple[Finding, ...]
     structures: tuple[Structure, ...]
@@ -36,32 +37,32 @@ class Diagnosed(Document, earlier=lambda old: {"structures": [], "noise": [], "n
     """Kinds of sensor whose stated standard errors the readings contradict."""
     notes: tuple[str, ...]
     calibration: Calibration = field(compare=False)
-    """With the named causes in the model."""
+    """Calibration with the named causes in the model."""
     residuals_before: Residuals = field(compare=False)
     """Measured minus simulated under the baseline model."""
 
 
 @dataclass(frozen=True)
 class StoredDiagnosis:
-    """What the simulation gets wrong about a session."""
+    """Diagnosis of a session as it is stored."""
 
     session: str
     model_revision: int
-    """In force when it was made."""
+    """Revision of the model in force when it was made."""
     state: DiagnosisState
     summary: str
     found: Diagnosed | None
-    """None where the session could not be diagnosed, or where no causes are looked for."""
+    """Contents of the diagnosis; None where the session could not be diagnosed, or where no causes are looked for."""
     document: str | None
     """imu-diagnosis/1, JSON as it was written: what the API hands out; None where there was nothing to write."""
     verdict_after: Verdict | None
-    """That the session would have with the named causes in the model; None where nothing was judged or named."""
+    """Verdict of the session with the named causes in the model; None where nothing was judged or named."""
     estimator_version: str
     created_at: datetime
     reservations: tuple[Reservation, ...] = ()
     """Reservations of the session's verdict."""
     gain_in_words: str = ""
-    """What the named causes gain, in one sentence; empty where none is named."""
+    """Gain of the named causes, in one sentence; empty where none is named."""
 
 
 @dataclass(frozen=True)
@@ -70,8 +71,8 @@ class DiagnosisReport:
 
     session: StoredSession
     diagnosis: StoredDiagnosis | None
-    """None while it is being made."""
+    """Diagnosis; None while it is being made."""
     calibration: Calibration
-    """In force."""
+    """Calibration in force."""
     revisions: tuple[ModelRevision, ...]
-    """That concern the session, oldest first."""
+    """Revisions that concern the session, oldest first."""

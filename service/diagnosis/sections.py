@@ -31,16 +31,16 @@ TONES = {
 
 @dataclass(frozen=True)
 class DiagnosisLine:
-    """What the simulation gets wrong, in one line."""
+    """Diagnosis in one line."""
 
     tone: str
     text: str
     gain: str = ""
-    """What naming it gains, in one sentence."""
+    """Gain from the named causes, in one sentence."""
 
 
 def diagnosis_line(found: DiagnosisSummary | None, failed: str = "") -> DiagnosisLine:
-    """What is known; None while it is still being examined, or where that ``failed``."""
+    """The line of a diagnosis; pending while ``found`` is None, unless it ``failed``."""
     if found is None and failed:
         return DiagnosisLine(TONES[DiagnosisState.FAILED], session_failed(failed))
     return (
@@ -72,13 +72,13 @@ class SharedView:
     """The course of one finding, for people."""
 
     sensor: str
-    """That shows it most."""
+    """Sensor that shows it most."""
     chart: ChartSet
     table: ResidualTable
 
 
 def shared_views(findings: Sequence[Finding], calibration: Calibration) -> tuple[SharedView | None, ...]:
-    """Of every finding in turn; None where its sensors share no course."""
+    """The course of every finding in turn; None where its sensors share no course."""
     kinds = {sensor.name: sensor.kind for sensor in calibration.sensors}
     return tuple(
         None if f.shared is None else _shared(f.shared, kinds, calibration.residuals, f"shared-{number}")

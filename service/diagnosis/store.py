@@ -27,7 +27,7 @@ def inapplicable_to_dict(unit: str) -> Json:
 
 
 def read_diagnosis(text: str) -> Diagnosed | None:
-    """What was written, null as NaN; None of a programme in which no causes are looked for."""
+    """Reads a stored diagnosis, null as NaN; None for a programme in which no causes are looked for."""
     document = json.loads(text)
     return None if document["gain"] is None else Diagnosed.from_dict(document)
 
@@ -84,7 +84,7 @@ class Diagnoses(Queries):
         )
 
     def with_findings(self, sessions: Iterable[str]) -> dict[str, Diagnosed]:
-        """What was named in those of some sessions in which anything was, in one query."""
+        """The diagnoses with findings among those of some sessions, in one query."""
         query = select(DiagnosisRow.session_id, DiagnosisRow.document).where(
             DiagnosisRow.session_id.in_(tuple(sessions)),
             DiagnosisRow.state.in_((DiagnosisState.NAMED, DiagnosisState.UNDECIDED)),

@@ -12,7 +12,7 @@ from service.storage.tables import Base
 
 
 class DiagnosisRow(Base):
-    """What the simulation gets wrong about a session: imu-diagnosis/1, deflated, or why there is none."""
+    """Diagnosis of a session: imu-diagnosis/1, deflated, or the reason why there is none."""
 
     __tablename__ = "diagnoses"
     __table_args__ = (Index("ix_diagnoses_failed", "state", **only_where(IS_FAILED)),)

@@ -1,1 +1,1 @@
-"""Flags: what somebody must look after; and the messages that tell of them."""
+"""Flags on matters that somebody must look after, and the messages about them."""

@@ -1,4 +1,4 @@
-"""Flags over HTTP, and the webhooks of programs that hear of them."""
+"""Flags over HTTP, and the webhooks of programs that are notified of them."""
 
 from dataclasses import replace
 from typing import Annotated
@@ -32,7 +32,7 @@ class FlagPage(Paged):
 
 
 class Assigning(Body, json_schema_extra={"example": {"to": "k.ito", "by": "K. Ito", "why": "knows the stand"}}):
-    """Who is to look after a flag."""
+    """Assignment of a flag."""
 
     to: Text = Field(description="Login or name of an account, any name where there are none; empty for nobody.")
     by: Name = Field(description="Who says so.")
@@ -40,19 +40,19 @@ class Assigning(Body, json_schema_extra={"example": {"to": "k.ito", "by": "K. It
 
 
 class AssigningSeveral(Assigning):
-    """Who is to look after several flags."""
+    """Assignment of several flags."""
 
     flags: list[FlagNumber] = Field(min_length=1, max_length=200, description="Numbers of the flags.")
 
 
 class Assigned(BaseModel):
-    """What became of several flags."""
+    """Result of assigning several flags."""
 
     changed: int = Field(description="How many have another assignee now; resolved ones are left alone.")
 
 
 class Handling(Body, json_schema_extra={"example": {"by": "K. Ito", "why": "replacement sensor ordered"}}):
-    """Who does something, and why."""
+    """Person and reason of an action on a flag."""
 
     by: Name = Field(description="Who does it.")
     why: Reason = Field(description="Why; what was found or done.")
@@ -178,7 +178,7 @@ def register_webhook(new: NewWebhook, storage: StorageOf, settings: SettingsOf, 
 
 @webhooks_router.get("/{id}/deliveries", responses=errors(404, 422))
 def list_deliveries(id: Number, store: Reading, limit: Limit = 100) -> DeliveryList:
-    """The latest messages to an address, and what became of them."""
+    """The latest messages to an address, and their outcomes."""
     found = Webhooks(store).deliveries(Webhooks(store).get(id).id, limit)
     return DeliveryList(deliveries=found)
 

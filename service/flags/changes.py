@@ -26,7 +26,7 @@ SEVERAL = "several accounts have this name; give the login"
 
 @dataclass(frozen=True)
 class Assignment:
-    """What somebody says of flags."""
+    """Assignment of flags, with the person and the reason."""
 
     to: str
     """Login or name; empty for nobody in particular. Where there are no accounts, any name."""
@@ -46,7 +46,9 @@ def assign_flag(storage: Storage, id: int, said: Assignment, now: datetime) -> F
 
 
 def assign_flags(storage: Storage, ids: Collection[int], said: Assignment, now: datetime) -> int:
-    """The same of several, all or none; how many it changed. Those that were resolved meanwhile are left alone."""
+    """Assigns several flags, all or none, and returns the number of changed ones. Those that were resolved meanwhile
+    are left alone.
+    """
     with storage.database.writing() as store:
         assignee = assignee_of(store, said.to)
         units, changed = {id: Flags(store).unit_of(id) for id in ids}, 0
@@ -88,16 +90,16 @@ def _put(store: Store, flag: Flag, unit: int, assignee: Assignee, *, said: Assig
 
 
 DONE = {FlagState.ACKNOWLEDGED: NoticeKind.ACKNOWLEDGED, FlagState.RESOLVED: NoticeKind.RESOLVED}
-"""What the flag's life keeps of each."""
+"""Kind of notice for each state."""
 POSSIBLE = {
     FlagState.ACKNOWLEDGED: (FlagState.RAISED,),
     FlagState.RESOLVED: (FlagState.RAISED, FlagState.ACKNOWLEDGED),
 }
-"""From which states a flag can be brought into which."""
+"""States from which a flag can be brought into a state."""
 
 
 def acknowledge_flag(storage: Storage, id: int, who: str, why: str, now: datetime) -> Flag:
-    """Somebody has seen the flag and looks after it; ConflictError where that was said before."""
+    """Marks a flag as seen and looked after; ConflictError where it already is."""
     return _bring(storage, id, FlagState.ACKNOWLEDGED, who=who, why=why, now=now)
 
 
@@ -107,9 +109,9 @@ def resolve_flag(storage: Storage, id: int, who: str, why: str, now: datetime) -
 
 
 def bring_flags(storage: Storage, ids: Collection[int], state: FlagState, who: str, why: str, now: datetime) -> int:
-    """The same said of several flags at once, all or none; how many it changed.
+    """Brings several flags to a state, all or none, and returns the number of changed ones.
 
-    Those of which somebody else has said so in the meantime are left alone.
+    Those that somebody else has brought there in the meantime are left alone.
     """
     with storage.database.writing() as store:
         units = {id: Flags(store).unit_of(id) for id in ids}
@@ -124,7 +126,7 @@ def bring_flags(storage: Storage, ids: Collection[int], state: FlagState, who: s
 
 @dataclass(frozen=True)
 class FlagHandling:
-    """What somebody says of one flag."""
+    """Change of one flag's state, with the person and the reason."""
 
     id: int
     unit: int
@@ -157,7 +159,7 @@ MAIL_ADDRESS = re.compile(r"mailto:[A-Za-z0-9.!#$%&'*+/=?^_`{|}~-]{1,64}@[A-Za-z
 """One receiver, without the fields of a mailto address."""
 NO_SERVER = "is an e-mail address, but no mail server is set: the operator sets IMU_HEALTH_MAIL_HOST and _FROM"
 SCHEMES = ("http", "https")
-"""That a message can be sent by."""
+"""Schemes of addresses of webhooks."""
 
 
 def register_webhook(
@@ -175,7 +177,7 @@ def register_webhook(
 
 
 def fault_of(url: str, hosts: tuple[str, ...], *, has_mail: bool = False) -> str:
-    """Why an address may not be called; empty where it may.
+    """The reason why an address may not be called; empty where it may.
 
     It is read by the library that will call it, so that no spelling of a host means one thing here and another there.
     """

@@ -18,10 +18,10 @@ SECONDS = 10.0
 
 @dataclass(frozen=True)
 class MailServer:
-    """Where e-mail is handed in, and who sends it."""
+    """Server that accepts e-mail, and its sender."""
 
     host: str = ""
-    """Empty where none is sent."""
+    """Name of the server; empty where no e-mail is sent."""
     port: int = 25
     sender: str = ""
     security: Literal["none", "starttls", "tls"] = "starttls"
@@ -36,7 +36,7 @@ NO_MAIL = MailServer()
 
 
 def send(server: MailServer, address: str, notice: Notice) -> tuple[bool, str]:
-    """Whether the server accepted the message, and what it said."""
+    """Whether the server accepted the message, and its answer."""
     try:
         with _connected(server) as client:
             client.send_message(_message(server, address, notice))

@@ -1,8 +1,8 @@
-"""Background work: what lies in the outbox is sent, signed, until it is accepted or given up; at least once.
+"""Background work: the messages of the outbox are sent, signed, until they are accepted or given up; at least once.
 
-An attempt is claimed before it is made. If the service dies in between, the claim runs out and the notice is sent
-again under the same key, by which the receiver knows it. Every receiver has a turn of its own: while one keeps the
-service waiting, the others get theirs, and a service that stops waits for none.
+An attempt is claimed before it is made. If the service dies in between, the claim runs out and the notice is sent again
+under the same key, by which the receiver knows it. Every receiver has a turn of its own: while one keeps the service
+waiting, the others get theirs, and a service that stops waits for none.
 """
 
 import asyncio
@@ -37,7 +37,7 @@ MOST_AT_ONCE = 16
 FIRST_PAUSE, LONGEST_PAUSE = timedelta(seconds=10), timedelta(hours=1)
 """A restart of the receiver is waited for, and at most an hour after it is back everything has been sent."""
 MOST_ATTEMPTS = 30
-"""Over about 21 hours."""
+"""Most attempts, over about 21 hours."""
 LOOK_EVERY = 1.0
 """Seconds between two looks into the outbox."""
 LONGEST_WAIT = 60.0
@@ -63,7 +63,7 @@ async def _deliver_until(outbox: "Outbox", guard: Guard, stop: Event) -> None:
 
 
 def deliver_due(storage: Storage, ways: "Ways", clock: Callable[[], datetime], metrics: Metrics) -> int:
-    """Attempts what is due, waits for every receiver, and returns how much that was."""
+    """Attempts all due messages, waits for every receiver, and returns their number."""
 
     async def once() -> int:
         async with turns_of(Outbox(storage, ways, clock), Guard(metrics)) as turns:
@@ -76,23 +76,23 @@ def deliver_due(storage: Storage, ways: "Ways", clock: Callable[[], datetime], m
 
 @dataclass(frozen=True)
 class Ways:
-    """Where messages may go."""
+    """Permitted ways of messages."""
 
     hosts: tuple[str, ...] = ()
-    """Of webhooks."""
+    """Hosts of webhooks."""
     mail: MailServer = NO_MAIL
 
 
 @dataclass(frozen=True)
 class Outbox:
-    """What is to be sent, and where it may go."""
+    """Messages to be sent, and their permitted ways."""
 
     storage: Storage
     ways: Ways
     clock: Callable[[], datetime]
 
     def claim(self, busy: Collection[int]) -> tuple[Outgoing, ...]:
-        """What is due, oldest first, but for receivers that have their turn."""
+        """The due messages, oldest first, except for receivers that have their turn."""
         now = self.clock()
         with self.storage.database.reading() as store:
             if not Webhooks(store).is_due(now, busy):
@@ -145,7 +145,7 @@ class DeliveryTurns:
         await asyncio.gather(*self._running.values())
 
     async def cancel(self) -> None:
-        """Ends every turn now; what it has claimed is sent again once the claim has run out."""
+        """Ends every turn now; claimed messages are sent again once the claim has run out."""
         for turn in self._running.values():
             turn.cancel()
         await asyncio.gather(*self._running.values(), return_exceptions=True)

@@ -65,7 +65,7 @@ class FlagCard:
     tone: str
     """Name of the style and the icon."""
     life: tuple[tuple[Notice, str], ...]
-    """What happened and the word for it, newest first."""
+    """Events with their word, newest first."""
 
     @property
     def stand(self) -> str:
@@ -79,7 +79,7 @@ class FlagCard:
 
     @property
     def name(self) -> str:
-        """Of the unit, the type or the stand that it is about."""
+        """Name of the unit, the type or the stand that it is about."""
         return self.flag.subject or self.flag.unit
 
     @property
@@ -102,9 +102,9 @@ class FlagsPage:
     cards: tuple[FlagCard, ...]
     matters: Mapping[str, str]
     states: Mapping[str, str]
-    """What the list can be narrowed to, in words."""
+    """Possible filters of the list, in words."""
     assigned: Mapping[str, str]
-    """Whose flags can be asked for: what stands in the address, and the name or words."""
+    """Assignees to filter by: value in the address, and the name or words."""
     people: tuple[str, ...]
     """Whom a flag can be given to; empty where anybody may be named."""
     pending: str
@@ -198,7 +198,7 @@ def assign(id: Number, by: By, storage: StorageOf, now: Now, *, to: To = "", why
 def acknowledge_chosen(
     flag: Chosen, by: By, why: Why, storage: StorageOf, now: Now, *, to: To = "", view: Asking
 ) -> RedirectResponse:
-    """Somebody looks after several; where the form names whom, they are given to them."""
+    """Acknowledges several flags; assigns them where the form names a person."""
     if to.strip():
         assign_flags(storage, flag, Assignment(to, by), now)
     bring_flags(storage, flag, FlagState.ACKNOWLEDGED, by, why, now)
@@ -214,7 +214,7 @@ def resolve_chosen(flag: Chosen, by: By, why: Why, storage: StorageOf, now: Now,
 
 @router.post("/{id}/acknowledge")
 def acknowledge(id: Number, by: By, why: Why, storage: StorageOf, now: Now) -> RedirectResponse:
-    """Somebody looks after the flag."""
+    """Acknowledges the flag."""
     return _back(acknowledge_flag(storage, id, by, why, now))
 
 

@@ -1,4 +1,4 @@
-"""Flags, the notices of their lives, and the addresses that are notified."""
+"""Flags, the notices of their changes, and the addresses that are notified."""
 
 from dataclasses import dataclass, field
 from datetime import datetime
@@ -10,7 +10,7 @@ from service.models.records import Scope
 
 
 class Matter(StrEnum):
-    """What a flag is about."""
+    """Subject matter of a flag."""
 
     TOLERANCE = "out-of-tolerance"
     """A sensor is judged fail or conditional fail."""
@@ -27,17 +27,17 @@ class Matter(StrEnum):
     DRIFT = "drift"
     """A parameter of a sensor within tolerance drifts, ages or moves at no steady rate."""
     LASTING = "lasting"
-    """What the sessions of a unit, a unit type or a stand show together."""
+    """A joint diagnosis of the sessions of a unit, a unit type or a stand has findings."""
     OVERDUE = "overdue"
     """The unit's calibration is overdue."""
 
 
 AT_FAULT = (Matter.STAND, Matter.SHIFTED)
-"""Of flags on units that find a stand at fault; their place is its name."""
+"""Matters of flags on units that find a stand at fault; their place is its name."""
 
 
 class FlagState(StrEnum):
-    """Where a flag is in its life."""
+    """State of a flag."""
 
     RAISED = "raised"
     ACKNOWLEDGED = "acknowledged"
@@ -45,7 +45,7 @@ class FlagState(StrEnum):
 
 
 class NoticeKind(StrEnum):
-    """What happened."""
+    """Kind of event."""
 
     RAISED = "flag.raised"
     SEEN = "flag.seen"
@@ -54,17 +54,17 @@ class NoticeKind(StrEnum):
     """A later session no longer shows it: somebody may resolve the flag."""
     ACKNOWLEDGED = "flag.acknowledged"
     ASSIGNED = "flag.assigned"
-    """Somebody is to look after it, or nobody any more."""
+    """The flag has another assignee, or none any more."""
     RESOLVED = "flag.resolved"
     VERDICT = "verdict.changed"
 
 
 @dataclass(frozen=True)
 class Assignee:
-    """Who is to look after flags."""
+    """Person assigned to flags."""
 
     name: str
-    """As flags show it; empty for nobody."""
+    """Name on flags; empty for nobody."""
     login: str = ""
     """Account; empty where there are none."""
 
@@ -80,7 +80,7 @@ class Concern:
     place: str
     """The sensor or the stand that it is about; empty for the unit as a whole."""
     severity: int
-    """Of one matter: a larger one is worse."""
+    """Severity among concerns of one matter: a larger one is worse."""
     summary: str
     scope: Scope = Scope.UNIT
     """Whether it is about the unit, or about its whole type or a stand, which the unit only showed last."""
@@ -89,7 +89,7 @@ class Concern:
 
     @property
     def key(self) -> tuple[str, str]:
-        """Of one matter at one place only one flag is open."""
+        """Matter and place, for which only one flag is open."""
         return self.matter, self.place
 
 
@@ -102,19 +102,19 @@ class Notice:
     unit: Hidden[str]
     flag: Hidden[int | None]
     kind: NoticeKind
-    """What happened."""
+    """Kind of event."""
     at: datetime
-    """When, UTC."""
+    """Time of the event, UTC."""
     who: str
-    """Through whom; `imu-health` for the service itself."""
+    """Person who did it; `imu-health` for the service itself."""
     text: str
-    """What was seen, or why it was done."""
+    """Observation, or reason for the action."""
     session: str | None
     """The session that it follows from, if one does."""
 
     @property
     def key(self) -> str:
-        """The same wherever and whenever it is sent: by it a receiver recognises a repeat."""
+        """Key of the notice, the same wherever and whenever it is sent: by it a receiver recognises a repeat."""
         return str(uuid5(NAMESPACE_URL, f"imu-health/{self.unit}/{self.at.isoformat()}/{self.id}"))
 
 
@@ -128,7 +128,7 @@ class Flag:
     unit: str
     """Serial number of the unit; of another scope, of the unit that showed it last."""
     matter: Matter
-    """What it is about."""
+    """Matter of the flag."""
     place: str
     """The sensor or the stand that it is about; empty for the unit as a whole."""
     state: FlagState
@@ -137,25 +137,25 @@ class Flag:
     summary: str
     """The matter as the latest session shows it, in a sentence or two."""
     proposal: str
-    """Why it could be resolved; empty while nothing speaks for it."""
+    """Reason why it could be resolved; empty while there is none."""
     session: str | None
     """The latest session that showed it."""
     raised_at: datetime
-    """When it was first raised, UTC."""
+    """Time at which it was first raised, UTC."""
     changed_at: datetime
-    """When it last changed, UTC."""
+    """Time of the last change, UTC."""
     assignee: str = ""
-    """Who is to look after it; empty where nobody in particular is."""
+    """Person assigned to it; empty where nobody in particular is."""
     scope: Scope = Scope.UNIT
     """Whether it is about the unit, its whole unit type or a stand."""
     subject: str = ""
     """Name of the unit type or the stand; empty where it is about the unit."""
     changes: tuple[Notice, ...] = ()
-    """Its life, oldest first; nothing of it is ever changed."""
+    """Changes of the flag, oldest first; they are never altered."""
 
     @property
     def key(self) -> tuple[str, str]:
-        """Of one matter at one place only one flag is open."""
+        """Matter and place, for which only one flag is open."""
         return self.matter, self.place
 
 
@@ -167,16 +167,16 @@ class Webhook:
     id: int
     """Number of the webhook."""
     url: str
-    """Where messages are sent."""
+    """Address to which messages are sent."""
     secret: Hidden[str] = field(repr=False)
     who: str
-    """Who registered it."""
+    """Person who registered it."""
     created_at: datetime
-    """When, UTC."""
+    """Time of registration, UTC."""
 
 
 class DeliveryState(StrEnum):
-    """How far a delivery has come."""
+    """Progress of a delivery."""
 
     WAITING = "waiting"
     DELIVERED = "delivered"
@@ -192,15 +192,15 @@ class Delivery:
     id: int
     """Number of the delivery."""
     notice: Notice
-    """What the address is sent."""
+    """Notice that the address is sent."""
     state: DeliveryState
     """`waiting`, `delivered`, or `failed`: given up."""
     attempts: int
-    """How often it was sent."""
+    """Number of attempts."""
     next_at: datetime
-    """When it is sent next, UTC; of one that has ended, when it ended."""
+    """Time of the next attempt, UTC; for an ended delivery, its end."""
     outcome: str
-    """What the latest attempt came to."""
+    """Result of the latest attempt."""
 
 
 @dataclass(frozen=True)
@@ -209,9 +209,9 @@ class Outgoing:
 
     delivery: int
     attempt: int
-    """Counted from 1."""
+    """Number of the attempt, from 1."""
     webhook: Webhook
     notice: Notice
     matter: Matter | None
-    """Of the notice's flag; None where it is about no flag."""
+    """Matter of the notice's flag; None where it is about no flag."""
     place: str

@@ -1,4 +1,4 @@
-"""Flags and what happened to them."""
+"""Flags and their notices."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -76,7 +76,7 @@ def notice_of(row: NoticeRow, serial: str) -> Notice:
 
 @dataclass(frozen=True)
 class FlagQuery(ListQuery):
-    """Which flags are wanted, newest first, and after or before which number."""
+    """Filter of flags, newest first, and the number after or before which the list goes on."""
 
     unit: str | None = None
     state: FlagState | None = None
@@ -85,17 +85,19 @@ class FlagQuery(ListQuery):
     """Part of the unit's serial number, or of the name of the type or the stand, small and capital letters alike."""
     unresolved: bool = False
     unit_type: str | None = None
-    """About a type as a whole."""
+    """Name of the type that the flags are about as a whole."""
     stand: str | None = None
     """About a stand, whether units, single sessions or all of them together tell of it."""
     worst_first: bool = False
     """Whether the gravest come first, not the newest."""
     assignee: Assignee | None = None
-    """Who looks after it, by the account or, where the flag names none, by the name; of nobody none is anybody's."""
+    """Assignee, by the account or, where the flag names none, by the name; the one without a name stands for unassigned
+    flags.
+    """
 
 
 IS_OF_UNIT = FlagRow.scope == Scope.UNIT
-"""About the unit itself, not about its type or a stand."""
+"""Condition of flags about the unit itself, not about its type or a stand."""
 IS_OF_RETIRED = exists().where(UnitRow.id == FlagRow.unit_id, UnitRow.retired_at.is_not(None))
 IS_RESOLVED = case((FlagRow.state == FlagState.RESOLVED, 1), else_=0)
 """A number that orders open flags before those that are resolved."""
@@ -168,7 +170,7 @@ class Flags(Queries):
         return tuple(_flag(row, serial) for row, serial in found)
 
     def open_stands_of(self, unit: int) -> tuple[str, ...]:
-        """Stands that a unit was ever measured on, and that have an open flag for what sessions found on them."""
+        """Stands on which a unit was ever measured and that have an open flag from sessions on them."""
         on = select(StandRow.name).join(SessionRow, SessionRow.stand_id == StandRow.id)
         conditions = (FlagRow.matter == Matter.STAND, FlagRow.scope == Scope.STAND, FlagRow.state != FlagState.RESOLVED)
         query = select(FlagRow.place).where(*conditions, FlagRow.place.in_(on.where(SessionRow.unit_id == unit)))
@@ -225,12 +227,12 @@ class Flags(Queries):
         return page.forward(_with_lives(rows))
 
     def assignee_of(self, id: int) -> Assignee:
-        """Who looks after a flag."""
+        """The person assigned to a flag."""
         query = select(FlagRow.assignee, FlagRow.assignee_login).where(FlagRow.id == id)
         return Assignee(*self._session.execute(query).one())
 
     def assignees(self) -> tuple[Assignee, ...]:
-        """Who looks after open flags, by name."""
+        """The persons assigned to open flags, by name."""
         query = select(FlagRow.assignee, FlagRow.assignee_login).distinct().order_by(FlagRow.assignee)
         found = self._session.execute(query.where(FlagRow.state != FlagState.RESOLVED, FlagRow.assignee != ""))
         return tuple(Assignee(name, login) for name, login in found)

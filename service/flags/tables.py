@@ -37,7 +37,7 @@ class FlagRow(Base):
 
 
 class NoticeRow(Base):
-    """What happened to a flag or to a unit's verdict, when and through whom; append-only."""
+    """Event of a flag or of a unit's verdict, with its time and person; append-only."""
 
     __tablename__ = "notices"
     __table_args__ = (Index("ix_notices_flag_id", "flag_id", "id"),)
@@ -77,6 +77,6 @@ class DeliveryRow(Base):
     webhook_id: Mapped[int] = mapped_column(ForeignKey("webhooks.id"))
     state: Mapped[str] = mapped_column(String(20))
     attempts: Mapped[int]
-    """How often it was sent."""
+    """Number of attempts."""
     ended_at: Mapped[datetime | None]
     outcome: Mapped[str]

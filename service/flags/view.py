@@ -1,4 +1,4 @@
-"""Which flags a visitor asked to see: it stands in the address."""
+"""The filter of flags in the address of the list."""
 
 from collections import Counter
 from typing import Annotated, ClassVar
@@ -16,12 +16,13 @@ from service.web.fields import Sought
 from service.web.list_view import ListView, Words, one_of
 
 ME, OF_NOBODY = "me", "nobody"
-"""What may stand in an address instead of a name."""
+"""Values of an address in place of a name."""
 
 
 def assignee_meant(store: Store, asked: str, person: Person) -> Assignee | None:
-    """Whose flags an address asks for; None for everybody's. RefusedError where nobody says who "me" is; a name that
-    no flag has finds nothing."""
+    """The assignee in an address; None for all flags. RefusedError where nobody is signed in for "me"; a name that no
+    flag has finds nothing.
+    """
     if not asked:
         return None
     if asked == ME:
@@ -73,11 +74,11 @@ class FlagsView(ListView):
     before: FlagNumber = ""
 
     def doing(self, action: str) -> str:
-        """Where the form of ticked flags is sent, so that this view comes back."""
+        """The address for the form of ticked flags, from which this view comes back."""
         return self.url().replace(self.PATH, f"{self.PATH}/{action}", 1)
 
     def query(self, assignee: Assignee | None) -> FlagQuery:
-        """What the store is asked: one flag more than fit on the page, which says whether there are others."""
+        """The query to the store: one flag more than fit on the page, which tells whether there are others."""
         return FlagQuery(
             state=FlagState(self.state) if self.state else None,
             limit=self.PAGE_SIZE + 1,
@@ -93,6 +94,6 @@ class FlagsView(ListView):
 
 
 def choices_of(assignees: tuple[Assignee, ...], *, is_signed_in: bool) -> dict[str, str]:
-    """Whose flags can be asked for, in words."""
+    """Possible assignees to filter by, in words."""
     of_person = {ME: MINE} if is_signed_in else {}
     return of_person | {OF_NOBODY: NOBODYS} | {assignee.login or assignee.name: assignee.name for assignee in assignees}

@@ -1,4 +1,4 @@
-"""Addresses that are notified, and the outbox of what is on its way to them."""
+"""Addresses that are notified, and the outbox of messages to them."""
 
 from collections.abc import Collection
 from dataclasses import replace
@@ -81,8 +81,9 @@ class Webhooks(Queries):
         )
 
     def claim(self, now: datetime, until: datetime, limit: int, but: Collection[int] = ()) -> tuple[Outgoing, ...]:
-        """What is due, oldest first, but for some webhooks; claimed until a time: nobody else sends it before, and then
-        somebody does."""
+        """The due messages, oldest first, except for some webhooks; claimed until a time: nobody else sends them
+        before, and then somebody does.
+        """
         query = (
             select(DeliveryRow, WebhookRow, NoticeRow, UnitRow.serial, FlagRow)
             .join(WorkRow, _WORK)
@@ -106,7 +107,9 @@ class Webhooks(Queries):
         return tuple(claimed)
 
     def put(self, delivery: int, state: DeliveryState, outcome: str, at: datetime) -> None:
-        """Writes what became of an attempt; ``at``: when it ended, or where it still waits the time of the next one."""
+        """Writes the outcome of an attempt; ``at``: its end, or where the message still waits the time of the next
+        one.
+        """
         is_waiting = state is DeliveryState.WAITING
         put = update(DeliveryRow).where(DeliveryRow.id == delivery, DeliveryRow.state == DeliveryState.WAITING)
         self._session.execute(put.values(state=state, outcome=outcome, ended_at=None if is_waiting else at))

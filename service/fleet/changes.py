@@ -38,7 +38,7 @@ def summarise_all(storage: Storage, now: datetime) -> int:
 
 
 def ask_for_summaries(store: Store, serial: str, now: datetime) -> None:
-    """After a change of a unit's records: of its type and of the stands that it was measured on."""
+    """Asks for the summaries of a unit's type and of its stands after a change of its records."""
     shared = (group.place for group in Groups(store).of_unit(serial) if group.level is not Level.UNIT)
     WorkQueue(store, WorkKind.SUMMARY).enqueue_each(shared, now)
 

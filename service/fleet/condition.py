@@ -19,7 +19,7 @@ from service.units.records import NO_CUSTOMER, Customer, Registered
 
 @dataclass(frozen=True)
 class ToleranceUsed:
-    """Of a tolerance T: by the deviation d, and by its expanded uncertainty."""
+    """Share of a tolerance T used by the deviation d, and by its expanded uncertainty."""
 
     deviation: float
     """|d|/T; beyond 1 the parameter is out of tolerance, probably where U reaches back to it."""
@@ -44,57 +44,59 @@ class UnitSummary:
     simulated: bool
     """Whether its sessions were simulated, not measured."""
     sessions: int
-    """How many sessions are stored."""
+    """Number of stored sessions."""
     last_session: str | None
     """Id of the latest session."""
     last_at: datetime | None
-    """When it was measured, UTC."""
+    """Start of the latest session, UTC."""
     verdict: Verdict | None
-    """Of the latest session."""
+    """Verdict of the latest session."""
     is_reference: bool
     """Whether the latest session is one that later ones are judged against."""
     reason: str
-    """Why, in one sentence."""
+    """Reason for the verdict, in one sentence."""
     worst_sensor: str | None
-    """The sensor that the verdict hangs on."""
+    """Sensor that sets the verdict."""
     worst_parameter: str | None
-    """The parameter that the verdict hangs on."""
+    """Parameter that sets the verdict."""
     margin: float | None
     """1 − (|d| + U)/T of it: 1 is no change, 0 the limit of a pass, negative beyond."""
     diagnosis: str = ""
-    """What the simulation gets wrong about the latest session; empty if nothing."""
+    """Diagnosis of the latest session in one line; empty where nothing is wrong."""
     gain: Hidden[str] = ""
-    """What naming it gains, in one sentence."""
+    """Gain from the named causes, in one sentence."""
     flags: int = 0
-    """How many flags are open."""
+    """Number of open flags."""
     due: datetime | None = None
-    """When its next calibration is due, UTC."""
+    """Due date of its next calibration, UTC."""
     due_reason: Hidden[str] = ""
-    """Why then, in one sentence."""
+    """Reason for the due date, in one sentence."""
     lot: str | None = None
     """Production lot, where it is recorded."""
     reservations: Hidden[Reservations] = ()
     """Reservations of the verdict."""
     customer: Hidden[Customer] = NO_CUSTOMER
-    """For whom it is calibrated."""
+    """Customer for whom it is calibrated."""
     owner: str = ""
-    """To whom it belongs, as the register says."""
+    """Owner by the register."""
     location: str = ""
-    """Where it is, as the register says."""
+    """Location by the register."""
     custodian: str = ""
-    """Who has it, as the register says."""
+    """Custodian by the register."""
     retired_at: datetime | None = None
-    """Since when it is retired, UTC; null while it is in use."""
+    """Time of retirement, UTC; null while it is in use."""
     is_undated: Hidden[bool] = False
     """Whether ``due`` and its outlook are still to be worked out with its latest records."""
     deviation: Hidden[float | None] = None
-    """|d|/T of the parameter that the verdict hangs on."""
+    """|d|/T of the parameter that sets the verdict."""
     failed: Hidden[str] = ""
-    """Why what follows from its latest records could not be worked out; empty where it was, or still is."""
+    """Reason why the results from its latest records could not be computed; empty where they were, or still are
+    being.
+    """
 
     @property
     def used(self) -> ToleranceUsed | None:
-        """How much of its tolerance the worst parameter uses; None where that was not judged."""
+        """Share of its tolerance that the worst parameter uses; None where that was not judged."""
         if self.margin is None or self.verdict in (None, Verdict.UNDECIDABLE):
             return None
         whole = 1 - self.margin
@@ -120,21 +122,21 @@ class FleetCondition:
     """The condition of the whole fleet."""
 
     units: int
-    """How many units there are."""
+    """Number of units."""
     verdicts: dict[Verdict, int]
-    """How many of them have each verdict."""
+    """Number of units by verdict."""
     simulated: int
-    """How many of them were simulated, not measured."""
+    """Number of units that were simulated, not measured."""
     flags: int = 0
-    """How many flags are open."""
+    """Number of open flags."""
     reserved: dict[Verdict, int] = field(default_factory=dict)
-    """Of how many with each verdict have a reservation."""
+    """Number of units with a reservation, by verdict."""
     overdue: Hidden[int] = 0
-    """How many should have been calibrated by now; 0 where that was not asked."""
+    """Number of units whose calibration is overdue; 0 where that was not asked."""
     references: int = 0
     """Of how many the latest session is a reference, which nothing was held against."""
     uncalibrated: int = 0
-    """Of how many registered units no session counts yet."""
+    """Number of registered units without a session that counts."""
 
     @classmethod
     def of(cls, tallies: Sequence[Tally], of_groups: int = 0, uncalibrated: int = 0) -> "FleetCondition":
@@ -154,15 +156,15 @@ class FleetCondition:
 
 @dataclass(frozen=True)
 class UnitKnown:
-    """What the page of a unit begins with."""
+    """Contents of the head of a unit's page."""
 
     summary: UnitSummary
     unit_type: UnitType
     waiting: int
     """Sessions that are still to be judged again after a change of the records."""
     reference_session: str | None
-    """What the next session will be judged against; None when the next one becomes the reference."""
+    """Reference for the next session; None where the next one becomes the reference."""
     outlook: UnitOutlook | None
-    """None before a session was judged."""
+    """Outlook of the unit; None before a session was judged."""
     entry: Registered
-    """What the register says."""
+    """Entry in the register."""

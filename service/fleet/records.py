@@ -1,4 +1,4 @@
-"""Which units are wanted and in which order, and what the fleet page announces."""
+"""Filter and order of lists of units, and the announcements of the fleet page."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -13,14 +13,14 @@ from service.stands.records import StandCondition
 
 
 class Order(StrEnum):
-    """What units are listed by; serial numbers order those that are alike."""
+    """Order of a list of units; equal ones are ordered by serial number."""
 
     USE = "use"
-    """Those that may not be used first, then by condition; what falls due moves within an hour."""
+    """Units that may not be used first, then by condition; a unit that falls due moves within an hour."""
     CONDITION = "condition"
     """Worst first, least margin to tolerance first."""
     DUE = "due"
-    """What needs a hand or another session first, then by the date of the next calibration."""
+    """Units that need work or another session first, then by the date of the next calibration."""
     SERIAL = "unit"
     TYPE = "type"
     LAST = "last"
@@ -37,7 +37,7 @@ class UseAt:
 
 @dataclass(frozen=True)
 class FleetQuery(ListQuery):
-    """Which units are wanted, and after or before which serial number."""
+    """Filter of units, and the serial number after or before which the list goes on."""
 
     use: UseAt | None = None
     verdict: Verdict | None = None
@@ -51,7 +51,7 @@ class FleetQuery(ListQuery):
     """Only units that wait for no date: a hand, another session, or the first one."""
     unit_type: str | None = None
     stand: str | None = None
-    """Where the latest session was measured."""
+    """Stand of the latest session."""
     lot: str | None = None
     flagged: bool = False
     """Only units with an open flag."""
@@ -60,7 +60,7 @@ class FleetQuery(ListQuery):
     location: str | None = None
     custodian: str | None = None
     uncalibrated: bool = False
-    """Only registered units of which no session counts yet."""
+    """Only registered units without a session that counts."""
     retired: bool | None = False
     """Whether the unit is retired; None where either will do."""
     unfit: bool = False
@@ -70,7 +70,7 @@ class FleetQuery(ListQuery):
 
 @dataclass(frozen=True)
 class FleetChoices:
-    """What a fleet can be narrowed to, each by name."""
+    """Possible filters of a fleet, each by name."""
 
     types: tuple[str, ...] = ()
     stands: tuple[str, ...] = ()
@@ -82,9 +82,9 @@ class FleetChoices:
 NOT_KNOWN = -1
 """Severity of a unit of which no session is accepted."""
 UNCALIBRATED = -2
-"""The same of one that is in the register: the fleet lists it."""
+"""Severity of a registered unit without a session: the fleet lists it."""
 RETIRED = -3
-"""Of a retired unit, whatever its sessions: the fleet leaves it out."""
+"""Severity of a retired unit, whatever its sessions: the fleet leaves it out."""
 STEP, LAST = 10, 200
 """Per cent of the tolerance: width of a bar, and where the bar of everything beyond begins."""
 NOT_JUDGED = -1
@@ -92,7 +92,7 @@ NOT_JUDGED = -1
 
 
 def bar_of(margin: float | None) -> int:
-    """Which tenth of its tolerance a unit uses up, uncertainty included."""
+    """The tenth of its tolerance that a unit uses, uncertainty included."""
     if margin is None:
         return NOT_JUDGED
     return int(min(100 * (1 - margin), LAST) // STEP)
@@ -100,7 +100,7 @@ def bar_of(margin: float | None) -> int:
 
 @dataclass(frozen=True)
 class Tally:
-    """How many units are in one condition and use so much of their tolerance."""
+    """Number of units in one condition with one tenth of tolerance used."""
 
     verdict: Verdict
     is_reference: bool
@@ -108,20 +108,20 @@ class Tally:
     bar: int
     units: int
     flags: int
-    """That are open on them."""
+    """Open flags on them."""
     reserved: int
-    """Of how many the verdict has a reservation."""
+    """Number of units whose verdict has a reservation."""
 
 
 @dataclass(frozen=True)
 class Announced:
-    """What concerns many units, or waits for somebody."""
+    """Facts that concern many units, or wait for somebody."""
 
     stands: tuple[StandCondition, ...]
-    """That shift every unit measured on them, or did, by name."""
+    """Stands that shift every unit measured on them, or did, by name."""
     questioned: tuple[Questioned, ...]
     """Sessions that wait for an engineer, the latest first."""
     found: tuple[FoundTogether, ...]
-    """What sessions show together: of stands before types before units."""
+    """Findings of groups of sessions: of stands before types before units."""
     groups: int
     """Number of groups that show something, those that are not named too."""

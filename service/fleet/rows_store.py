@@ -1,4 +1,4 @@
-"""What a report of the whole fleet reads: one query each, row after row, whatever the size of the fleet."""
+"""Queries of reports of the whole fleet: one each, row after row, whatever the size of the fleet."""
 
 from collections.abc import Iterable, Iterator
 from typing import Any
@@ -29,7 +29,7 @@ class FleetRows(Queries):
     """Rows of many units, by serial number."""
 
     def latest_decisions(self, serials: tuple[str, ...]) -> Iterator[tuple[str, str, Decision]]:
-        """Serial number, session and what was decided there, of the latest session of some units."""
+        """Serial number, session and decisions of the latest session of some units."""
         query = (
             select(UnitRow.serial, DecisionRow)
             .select_from(ConditionRow)
@@ -58,7 +58,7 @@ class FleetRows(Queries):
         return {row[0]: LatestSession(*row[:-1], Verdict(row[-1])) for row in self._session.execute(query)}
 
     def points_of_latest(self, serials: tuple[str, ...]) -> int:
-        """How many parameters the latest sessions of some units have."""
+        """The number of parameters in the latest sessions of some units."""
         query = (
             select(func.count())
             .select_from(ConditionRow)
@@ -86,7 +86,7 @@ class FleetRows(Queries):
         yield from _by_serial(self._session.execute(query.execution_options(yield_per=AT_A_TIME)))
 
     def worst_histories(self, serials: tuple[str, ...]) -> tuple[tuple[str, HistoryPoint], ...]:
-        """Of some units the history of the parameter that the latest verdict hangs on."""
+        """Histories of the parameter that sets the latest verdict, for some units."""
         query = (
             _points()
             .join(ConditionRow, ConditionRow.unit_id == UnitRow.id)

@@ -57,23 +57,23 @@ Other = aliased(SessionRow)
 EVERY = 1_000_000
 """Units of a fleet at most, where a count is of all."""
 CHOICES = ("types", "stands", "lots", "locations", "custodians")
-"""Of `FleetChoices`."""
+"""Fields of `FleetChoices`."""
 
 
 @dataclass(frozen=True)
 class Refreshed:
-    """A unit's row, and what it said before."""
+    """A unit's row, and its earlier verdict."""
 
     latest: StoredSession | None
-    """None where the unit has no accepted session, and so no row."""
+    """Latest accepted session; None where the unit has none, and so no row."""
     before: Verdict | None
-    """None where there was no row."""
+    """Earlier verdict; None where there was no row."""
     was_reference: bool
     """Whether the latest session was one that later ones are judged against, where its verdict was another."""
 
 
 OPEN_OF_GROUPS = select(func.count()).where(FlagRow.scope != Scope.UNIT, FlagRow.state != RESOLVED).scalar_subquery()
-"""Open flags of types and stands."""
+"""Number of open flags of types and stands."""
 
 
 _UNIT: BindParameter[int] = bindparam("unit")
@@ -96,7 +96,7 @@ _LATEST = (
     .order_by(SessionRow.started_at.desc(), SessionRow.id.desc())
     .limit(1)
 )
-"""The latest accepted session of a unit, what was known of it, and how many there are."""
+"""The latest accepted session of a unit, its stored condition, and its number of sessions."""
 
 
 class Fleet(Queries):
@@ -140,7 +140,7 @@ class Fleet(Queries):
         return page.forward(_summary(row) for row in self._session.execute(query))
 
     def dates(self, wanted: FleetQuery) -> tuple[datetime | None, ...]:
-        """When each of the wanted units is due, however many; None where that is not known."""
+        """The due dates of all wanted units; None where a date is not known."""
         listed = _listed(wanted.retired)
         page = UNITS.page(self._session, listed, replace(wanted, limit=EVERY))
         dates = page.cut(listed.with_only_columns(OutlookRow.due, maintain_column_froms=True))
@@ -196,11 +196,11 @@ class Fleet(Queries):
         )
 
     def condition(self) -> FleetCondition:
-        """How many units are in which condition."""
+        """The number of units in each condition."""
         return _condition(self._session.execute(_tallies().add_columns(OPEN_OF_GROUPS)).all())
 
     def condition_at(self, now: datetime) -> FleetCondition:
-        """The same, and how many should have been calibrated by now, in one query."""
+        """The condition of the fleet with the number of overdue units, in one query."""
         due = overdue_count(now).scalar_subquery()
         rows = self._session.execute(_tallies().add_columns(OPEN_OF_GROUPS, due)).all()
         return replace(_condition([row[:-1] for row in rows]), overdue=rows[0][-1] if rows else 0)
@@ -242,7 +242,7 @@ def _tally(row: Sequence[Any]) -> Tally:
 
 
 def _condition(rows: Sequence[Sequence[Any]]) -> FleetCondition:
-    """Of tallies, each with the open flags of types and stands at its end."""
+    """The condition from tallies, each with the open flags of types and stands at its end."""
     tallies = [_tally(row[:-1]) for row in rows if row[0] != UNCALIBRATED]
     uncalibrated = sum(row[4] for row in rows if row[0] == UNCALIBRATED)
     return FleetCondition.of(tallies, rows[0][-1] if rows else 0, uncalibrated)
@@ -263,11 +263,11 @@ LAST = (
     SessionRow.margin,
 )
 FOUND = (DiagnosisRow.state, DiagnosisRow.summary, DiagnosisRow.gain_in_words, DiagnosisRow.reservations)
-"""What a line of the fleet shows of the latest session and of its diagnosis; the rest is long, and stays unread."""
+"""Columns of the diagnosis in a line of the fleet; the rest is long, and stays unread."""
 
 
 _Outlook, _Derivation = aliased(WorkRow), aliased(WorkRow)
-"""What is still to be made of a unit."""
+"""Pending work on a unit."""
 Summaries = Select[
     UnitRow, str, ConditionRow, SessionRow, DiagnosisRow, datetime | None, str, str, str, Any, *tuple[Any, ...]
 ]
@@ -279,7 +279,7 @@ _WORST = (
     & (DecisionRow.sensor == SessionRow.worst_sensor)
     & (DecisionRow.parameter == SessionRow.worst_parameter)
 )
-"""What was decided of the parameter that a verdict hangs on."""
+"""Condition for the decision on the parameter that sets a verdict."""
 
 
 def _listed(retired: bool | None) -> Select[int]:
@@ -329,7 +329,7 @@ def _summaries(units: FromClause = UnitRow.__table__) -> Summaries:
 
 
 def _waiting() -> ScalarSelect[int]:
-    """How many accepted sessions of a unit are to be judged or weighed."""
+    """The number of accepted sessions of a unit that are to be judged or weighed."""
     conditions = (Other.unit_id == UnitRow.id, is_waiting(Other.basis), Other.state == RecordState.ACCEPTED)
     return select(func.count()).select_from(Other).where(*conditions).scalar_subquery()
 
@@ -397,5 +397,5 @@ def _reservations(row: DiagnosisRow | None) -> Reservations:
 
 
 def _diagnosis(row: DiagnosisRow | None) -> str:
-    """In one line, where something is wrong."""
+    """The diagnosis in one line, where something is wrong; empty otherwise."""
     return "" if row is None or not DiagnosisState(row.state).is_wrong else row.summary

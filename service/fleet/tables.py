@@ -27,7 +27,7 @@ class ConditionRow(Base):
 
 
 class UseRow(Base):
-    """What a unit may be used for, rewritten with its records; that it fell due since is asked of the clock."""
+    """Permitted use of a unit, rewritten with its records; whether it fell due since is a question to the clock."""
 
     __tablename__ = "uses"
     unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"), primary_key=True, autoincrement=False)
@@ -41,7 +41,7 @@ class UseRow(Base):
 
 
 class TalliedRow(Base):
-    """What a unit adds to the counts of the fleet: it says what to take off when the unit changes."""
+    """Contribution of a unit to the counts of the fleet, to be subtracted when the unit changes."""
 
     __tablename__ = "tallied"
     unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"), primary_key=True, autoincrement=False)
@@ -55,8 +55,9 @@ class TalliedRow(Base):
 
 
 class FleetTallyRow(Base):
-    """How many units of a type are in one condition and use so much of their tolerance; their open flags, and how many
-    of their verdicts have a reservation."""
+    """Number of units of a type in one condition with one tenth of tolerance used; their open flags, and the number of
+    their verdicts with a reservation.
+    """
 
     __tablename__ = "fleet_tallies"
     unit_type_id: Mapped[int] = mapped_column(ForeignKey("unit_types.id"), primary_key=True, autoincrement=False)

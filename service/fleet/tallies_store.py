@@ -1,7 +1,7 @@
 """Counts of the fleet, kept by differences: what every touched unit adds now, less what it added before.
 
-A transaction notes the units that it touches; the counts are brought in line once, just before it commits, in the
-order of their keys, so that two transactions never wait for each other crosswise.
+A transaction notes the units that it touches; the counts are updated once, just before it commits, in the order of
+their keys, so that two transactions never wait for each other crosswise.
 """
 
 from collections import Counter
@@ -24,14 +24,14 @@ from service.storage.tables import Base
 from service.units.tables import UnitRow
 
 KEY = ("unit_type_id", "severity", "is_reference", "is_simulated", "bar")
-"""What units are counted by."""
+"""Columns by which units are counted."""
 Key = tuple[Any, ...]
 Stood = tuple[int, int]
 """A unit and a stand."""
 
 
 class Tallies(Queries):
-    """How many units are in which condition, and how many sessions were measured where."""
+    """Counts of units by condition, and of sessions by stand."""
 
     def settle(self, units: Collection[int]) -> None:
         """Brings the counts in line with touched units."""
@@ -50,7 +50,7 @@ class Tallies(Queries):
         _add(self._session, FleetTallyRow, KEY, counts)
 
     def _tallied_and_seen(self, units: Collection[int]) -> tuple[dict[int, dict[str, Any]], dict[int, dict[str, Any]]]:
-        """What units added so far, and what they add by their rows of now."""
+        """The earlier contributions of units, and those by their present rows."""
         rows = self._session.execute(_TALLIED_AND_SEEN, {"units": sorted(units)}).all()
         was = {row[0]: dict(zip((*KEY, "flags", "reserved"), row[10:], strict=True)) for row in rows}
         now = {

@@ -1,4 +1,4 @@
-"""May a unit be used: the four answers, each said alike wherever it stands."""
+"""Permitted use of a unit: the four answers, worded the same everywhere."""
 
 from collections.abc import Iterator, Mapping
 from enum import StrEnum
@@ -7,14 +7,14 @@ from estimator.message import say
 
 
 class Use(StrEnum):
-    """What a unit may be used for now."""
+    """Permitted use of a unit now."""
 
     YES = "yes"
     RESERVED = "with-reservation"
-    """It may, and something must be known or done."""
+    """The unit may be used, and something must be known or done."""
     NO = "no"
     PENDING = "not-known-yet"
-    """Its verdict or its dates are being worked out; until then it may not."""
+    """Its verdict or its dates are being worked out; until then the unit may not be used."""
 
 
 RANKS = {Use.NO: 0, Use.PENDING: 1, Use.RESERVED: 2, Use.YES: 3}

@@ -1,4 +1,4 @@
-"""Which units a list holds and in which order, and what the fleet page announces above it."""
+"""Conditions and orders of lists of units, and the announcements above the list on the fleet page."""
 
 from sqlalchemy import ColumnElement, String, Subquery, case, cast, false, func, literal, select
 
@@ -88,14 +88,14 @@ UNITS: Listing[FleetQuery] = Listing(
 
 
 WIDEST = (Level.STAND, Level.TYPE, Level.UNIT)
-"""What concerns most units first."""
+"""Levels of groups, that of most units first."""
 
 
 class Announcements(Queries):
-    """Stands that shifted, sessions that wait for an engineer, what sessions show together."""
+    """Stands that shifted, sessions that wait for an engineer, and findings of groups."""
 
     def all(self, questioned: int, found: int) -> Announced:
-        """At most so many of the second and of the third."""
+        """All announcements, with at most so many questioned sessions and findings of groups."""
         listed = lists("stands", "questioned", "found")
         shifts, waiting, together = _shifts(), _questioned(questioned), _found(found)
         query = (

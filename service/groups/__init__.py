@@ -1,1 +1,1 @@
-"""What the sessions of a unit, a unit type or a stand show together."""
+"""Joint diagnosis of the sessions of a unit, a unit type or a stand."""

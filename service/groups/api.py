@@ -1,4 +1,4 @@
-"""What the sessions of a unit, a type or a stand show together, over HTTP."""
+"""Joint diagnosis of the sessions of a unit, a unit type or a stand over HTTP."""
 
 import json
 from dataclasses import dataclass
@@ -34,7 +34,7 @@ class NotPooled(BaseModel):
 
 
 class GroupDocument(BaseModel):
-    """imu-fleet-diagnosis/1: what the sessions of a unit, a unit type or a stand show together."""
+    """Joint diagnosis of the sessions of a unit, a unit type or a stand, imu-fleet-diagnosis/1."""
 
     format: str = Field(description="`imu-fleet-diagnosis/1`.")
     level: str = Field(description="`unit`, `type` or `stand`.")
@@ -93,19 +93,19 @@ class PendingGroup(BaseModel):
 PENDING: dict[int | str, Json] = {
     202: {"model": PendingGroup, "description": "Still being made; ask again after Retry-After seconds."}
 }
-"""How OpenAPI describes the answer while it is being made."""
+"""OpenAPI description of the answer while it is being made."""
 
 
 router = APIRouter(tags=["diagnosis"])
 RETRY_AFTER = "5"
-"""Seconds: what a group of some tens of sessions takes."""
+"""Seconds until a retry: the time for a group of some tens of sessions."""
 ANSWERS = {**PENDING, **errors(404, 422)}
 ACCEPTED = errors(400, 404, 409, 422)
 
 
 @dataclass(frozen=True)
 class Accepting:
-    """What accepting takes beside what is accepted."""
+    """Accepts findings of a group, with its stores, the time and the person."""
 
     groups: GroupReaderOf
     reception: ReceptionOf
@@ -129,37 +129,41 @@ AcceptingOf = Annotated[Accepting, Depends()]
 
 @router.get("/units/{serial:path}/diagnosis", responses=ANSWERS, response_model=GroupDocument)
 def read_unit_diagnosis(serial: Serial, groups: GroupReaderOf) -> Response | GroupDocument:
-    """What the sessions of a unit since its last service show together, imu-fleet-diagnosis/1; waits some seconds."""
+    """Joint diagnosis of the sessions of a unit since its last service, imu-fleet-diagnosis/1; waits some seconds."""
     return _answer(groups.read(Level.UNIT, serial), Level.UNIT, serial)
 
 
 @router.get("/unit-types/{name:path}/diagnosis", responses=ANSWERS, response_model=GroupDocument)
 def read_unit_type_diagnosis(name: TypeName, groups: GroupReaderOf) -> Response | GroupDocument:
-    """What the sessions of all units of a type show together, imu-fleet-diagnosis/1; waits some seconds."""
+    """Joint diagnosis of the sessions of all units of a type, imu-fleet-diagnosis/1; waits some seconds."""
     return _answer(groups.read(Level.TYPE, name), Level.TYPE, name)
 
 
 @router.get("/stands/{name:path}/diagnosis", responses=ANSWERS, response_model=GroupDocument)
 def read_stand_diagnosis(name: StandName, groups: GroupReaderOf) -> Response | GroupDocument:
-    """What the sessions on a stand show together, imu-fleet-diagnosis/1; waits some seconds."""
+    """Joint diagnosis of the sessions on a stand, imu-fleet-diagnosis/1; waits some seconds."""
     return _answer(groups.read(Level.STAND, name), Level.STAND, name)
 
 
 @router.post("/units/{serial:path}/diagnosis/accept", status_code=201, responses=ACCEPTED)
 def accept_for_unit(serial: Serial, new: NewLastingSchema, accepting: AcceptingOf) -> ModelDocument:
-    """Accept what a unit's sessions show together; every session that it concerns is computed again."""
+    """Accept an effect common to a unit's sessions into its model; every session that it concerns is computed again."""
     return accepting.accepted(Level.UNIT, serial, new)
 
 
 @router.post("/unit-types/{name:path}/diagnosis/accept", status_code=201, responses=ACCEPTED)
 def accept_for_unit_type(name: TypeName, new: NewLastingSchema, accepting: AcceptingOf) -> ModelDocument:
-    """Accept what the sessions of a type show together; every session that it concerns is computed again."""
+    """Accept an effect common to the sessions of a unit type into its model; every session that it concerns is computed
+    again.
+    """
     return accepting.accepted(Level.TYPE, name, new)
 
 
 @router.post("/stands/{name:path}/diagnosis/accept", status_code=201, responses=ACCEPTED)
 def accept_for_stand(name: StandName, new: NewLastingSchema, accepting: AcceptingOf) -> ModelDocument:
-    """Accept what the sessions on a stand show together; every session that it concerns is computed again."""
+    """Accept an effect common to the sessions on a stand into its model; every session that it concerns is computed
+    again.
+    """
     return accepting.accepted(Level.STAND, name, new)
 
 

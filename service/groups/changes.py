@@ -1,4 +1,4 @@
-"""What sessions tell of their groups is kept, and read as evidence in later diagnoses."""
+"""Stores the statistics of sessions for their groups, and reads them as evidence in later diagnoses."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -27,11 +27,11 @@ from service.storage.queries import Store
 from service.units.store import Services, Units
 
 LEVELS = {scope: Level(level) for level, scope in SCOPES.items()}
-"""Whose sessions show what becomes part of a model."""
+"""Level of the group whose findings can become part of a model, by the scope of the model."""
 
 
 def tell_own(store: Store, scope: Scope, subject: str) -> None:
-    """Of the stored answer, after it or the model in force changed."""
+    """Stores the group's own findings from its stored answer, after that or the model in force changed."""
     group = Groups(store).find(LEVELS[scope], subject)
     answer = Groups(store).get(group)
     if answer is None or answer.document is None:
@@ -79,7 +79,9 @@ def add_statistics(storage: Storage, session: str, sha256: str, filename: str) -
 
 
 def kept_before(store: Store, session: StoredSession) -> dict[str, SessionStatistics]:
-    """Of the accepted sessions of the unit's epoch that were measured before one, oldest first, by their identifier."""
+    """Statistics of the accepted sessions of the unit's epoch that were measured before one, oldest first, by
+    identifier.
+    """
     if session.programme not in CALIBRATIONS:
         return {}
     unit = Units(store).key(session.unit)
@@ -93,7 +95,9 @@ def kept_before(store: Store, session: StoredSession) -> dict[str, SessionStatis
 def as_evidence(
     session: CalibrationSession, kept: Mapping[str, SessionStatistics], history: Mapping[str, CalibrationSession]
 ) -> list[SessionStatistics]:
-    """Those of the same sensors, oldest first; of a session of the history that has none yet they are made here."""
+    """Statistics of sessions with the same sensors, oldest first; made here for a session of the history that has none
+    yet.
+    """
     if session.programme not in CALIBRATIONS or not history:
         return []
     names = tuple(sensor.name for sensor in session.sensors)

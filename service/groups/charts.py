@@ -1,4 +1,4 @@
-"""What sessions show together: each session's own amplitude beside the pooled one, and what all of them leave, without
+"""Charts of a group's findings: each session's own amplitude beside the pooled one, and the pooled residuals without
 the effect and with it.
 """
 
@@ -44,17 +44,17 @@ AIR = 0.04
 POOLED, VALUE = "pooled", "{value}"
 SIDES = ("without it", "with it")
 WHAT = {EVERY: "Every sensor", "δβ": "The angle β,", "δα": "The elevation α,"}
-"""What a picture is of, but for one sensor."""
+"""Subject of a picture, unless it is a single sensor."""
 BY_ANGLE = "β"
 TITLES = {BY_ANGLE: "β, °", "(T − T̄)": "T − T̄, K", "(t − t̄)": "t − t̄, h", "a": "input, of the applied vector"}
-"""Of the axis that a picture is drawn over."""
+"""Title of the axis that a picture is drawn over."""
 FACTORS = {BY_ANGLE: degrees(1.0), "(t − t̄)": 1 / 3600}
-"""From SI to what the axis shows."""
+"""Factors from SI to the unit of the axis."""
 
 
 @dataclass(frozen=True)
 class Element:
-    """One amplitude of a finding: its place in the tuples, its name and what it is read in."""
+    """One amplitude of a finding: its place in the tuples, its name and its measure."""
 
     number: int
     name: str
@@ -62,7 +62,7 @@ class Element:
 
 
 def elements_of(finding: GroupFinding) -> Iterator[Element]:
-    """Those that the sessions see."""
+    """The amplitudes that the sessions observe."""
     width = max(1, len(finding.amplitude) // max(1, len(finding.sensors)))
     for k, (value, sigma) in enumerate(zip(finding.amplitude, finding.sigma, strict=True)):
         if sigma is not None:

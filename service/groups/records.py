@@ -10,7 +10,7 @@ from estimator.message import say, with_messages
 
 
 class Level(StrEnum):
-    """Whose sessions."""
+    """Kind of group: the sessions of a unit, of a unit type or on a stand."""
 
     UNIT = "unit"
     TYPE = "type"
@@ -27,7 +27,7 @@ class Group:
 
     @property
     def place(self) -> str:
-        """What the queue of work calls it."""
+        """Name of the group in the queue of work."""
         return f"{self.level} {self.key}"
 
 
@@ -44,7 +44,7 @@ class Member:
     stand: str | None
     has_statistics: bool
     why: str
-    """It has none; empty where nobody knows yet."""
+    """Reason why it has none; empty where it is not known yet."""
 
 
 @dataclass(frozen=True)
@@ -52,31 +52,31 @@ class Members:
     """The sessions that a group's answer rests on."""
 
     sessions: tuple[Member, ...]
-    """Oldest first."""
+    """Sessions, oldest first."""
     left_out: int
     """Older ones, beyond the most that are pooled."""
 
     @property
     def pooled(self) -> tuple[Member, ...]:
-        """Those with statistics."""
+        """Sessions with statistics."""
         return tuple(m for m in self.sessions if m.has_statistics)
 
     @property
     def without(self) -> tuple[Member, ...]:
-        """Those without."""
+        """Sessions without statistics."""
         return tuple(m for m in self.sessions if not m.has_statistics)
 
 
 @dataclass(frozen=True)
 class GroupAnswer:
-    """What the sessions of a group show together, as it is stored."""
+    """Stored joint diagnosis of a group's sessions."""
 
     rests_on: str
     """Digest of its sessions."""
     sessions: int
     summary: str
     own: str
-    """Of what they show, that which is of the group itself: not of one of its units, nor of a stand; empty for none."""
+    """Findings that belong to the group itself, neither to one of its units nor to a stand; empty for none."""
     document: str | None
     """imu-fleet-diagnosis/1 with what the service adds; None where it could not be made."""
     estimator_version: str
@@ -106,7 +106,7 @@ STRUCTURES = Form(
 
 @dataclass(frozen=True)
 class GroupShown(Document, forms={"first": MOMENT, "last": MOMENT, "structures": STRUCTURES}):
-    """What imu-fleet-diagnosis/1 says, as pages show it."""
+    """Contents of imu-fleet-diagnosis/1 for pages."""
 
     sessions: int
     first: str | None
@@ -117,5 +117,5 @@ class GroupShown(Document, forms={"first": MOMENT, "last": MOMENT, "structures":
     gain: GroupGain | None
     terms: tuple[EmpiricalTerm, ...]
     structures: tuple[str, ...]
-    """Where structure lives that no cause explains."""
+    """Places of structure in the residuals that no cause explains."""
     notes: tuple[str, ...]

@@ -1,4 +1,4 @@
-"""What a group of sessions shows, as a section of the page of its unit, unit type or stand."""
+"""Joint diagnosis of a group of sessions, as a section of the page of its unit, unit type or stand."""
 
 from dataclasses import dataclass
 from urllib.parse import quote
@@ -23,11 +23,11 @@ from service.settings import VERSION
 from service.storage.queries import Store
 
 HOMES = {Level.UNIT: "units", Level.TYPE: "unit-types", Level.STAND: "stands"}
-"""Of the pages of groups, and of their answers as JSON."""
+"""Path of the pages of groups, and of their answers as JSON, by level."""
 MOST_FOUND = 4
 """Groups that the fleet page names before it counts the rest."""
 MOST_REVISIONS = 10_000
-"""More than anybody accepts."""
+"""Most revisions that are read, more than anybody accepts."""
 
 
 @dataclass(frozen=True)
@@ -47,27 +47,27 @@ class GroupSection:
 
     group: Group
     view: GroupView | None
-    """None until it is made of the group's records of now."""
+    """Contents of the section; None until it is made of the group's current records."""
     failed: str
-    """Why it cannot be made; empty else."""
+    """Reason why it cannot be made; empty otherwise."""
     effects: tuple[Drawn, ...] = ()
-    """Of every effect in turn."""
+    """Charts of every effect in turn."""
     terms: tuple[Drawn, ...] = ()
-    """Of every learned term in turn."""
+    """Charts of every learned term in turn."""
 
 
 @dataclass(frozen=True)
 class FoundLine:
-    """What was found anywhere, in one line."""
+    """Findings of all groups in one line."""
 
     found: tuple[tuple[str, str, str], ...]
-    """Address of its page, whose sessions, and what they show together."""
+    """Address of the group's page, the group in words, and its findings."""
     more: int
-    """Others."""
+    """Number of other groups."""
 
 
 def found_line(announced: Announced) -> FoundLine | None:
-    """Of the fleet page; None where no sessions together show anything."""
+    """The line of the fleet page; None where no group has findings."""
     lines = tuple((home_of(shown.group), whose(shown.group), shown.own) for shown in announced.found)
     return FoundLine(lines, announced.groups - len(lines)) if lines else None
 
@@ -83,7 +83,9 @@ def whose(group: Group) -> str:
 
 
 def group_section(store: Store, level: Level, name: str) -> GroupSection:
-    """What the sessions of a unit, a unit type or a stand show together, where it is made of its records of now."""
+    """The joint diagnosis of a unit, a unit type or a stand; without a view where it is not made of the current records
+    yet.
+    """
     group, answer, is_asked, failed = Groups(store).known(level, name)
     if failed:
         return GroupSection(group, None, group_failed(failed))

@@ -1,4 +1,4 @@
-"""Units, types and stands as groups of sessions, and what sessions tell of their groups."""
+"""Units, types and stands as groups of sessions, and the statistics of sessions for their groups."""
 
 import json
 import zlib
@@ -46,14 +46,16 @@ from service.units.tables import UnitRow
 
 
 def group_document(group: Group, found: GroupDiagnosis | None, members: Members) -> str:
-    """What was found, with what the pool leaves out; None of a group without a session to pool."""
+    """The joint diagnosis as JSON, with the sessions that the pool leaves out; of an empty group where ``found`` is
+    None.
+    """
     document = found or _empty(group)
     left = [{"session": m.session, "reason": m.why} for m in members.without]
     return json_text(STORED.written(document) | STORED.written({"left_out": members.left_out, "not_pooled": left}))
 
 
 def read_group(text: str) -> GroupShown:
-    """What `group_document` wrote."""
+    """Reads the output of `group_document`."""
     return GroupShown.from_dict(json.loads(text))
 
 
@@ -65,8 +67,9 @@ def _empty(group: Group) -> GroupDiagnosis:
 
 
 MOST = 60
-"""Sessions of a group that are pooled, the newest. An effect of one standard error in each reaches 8, at which it is
-named, at the 64th: fewer would miss what is worth a name. More would cost minutes, and tell of years ago."""
+"""Most sessions of a group that are pooled, the newest. An effect of one standard error in each reaches 8, at which it
+is named, at the 64th: fewer would miss effects worth naming. More would cost minutes, and reach years back.
+"""
 KEYS = {Level.UNIT: UnitRow.id, Level.TYPE: UnitTypeRow.id, Level.STAND: StandRow.id}
 CALLED = {Level.UNIT: UnitRow.serial, Level.TYPE: UnitTypeRow.name, Level.STAND: StandRow.name}
 WORDS = {Level.UNIT: "unit", Level.TYPE: "unit type", Level.STAND: "stand"}
@@ -127,13 +130,14 @@ class Groups(Queries):
         return tuple(Member(*row) for row in self._session.execute(newest))
 
     def get(self, group: Group) -> GroupAnswer | None:
-        """What is stored of a group; None where nothing is."""
+        """The stored answer of a group; None where there is none."""
         row = self._session.get(GroupDiagnosisRow, (group.level.value, group.key))
         return None if row is None else _answer(row)
 
     def known(self, level: Level, name: str) -> tuple[Group, GroupAnswer | None, bool, str]:
-        """A group by its name, what is stored of it, whether it is asked for again since, and why that failed; in one
-        query."""
+        """A group by its name, its stored answer, whether it is requested again since, and the reason why that failed;
+        in one query.
+        """
         row, number = GroupDiagnosisRow, KEYS[level]
         work = (WorkRow.kind == WorkKind.GROUP, WorkRow.key == literal(f"{level} ") + cast(number, String))
         again, failed = select(WorkRow.id).where(*work).exists(), select(func.max(WorkRow.failed)).where(*work)
@@ -145,7 +149,7 @@ class Groups(Queries):
         return Group(level, found[0], name), None if found[1] is None else _answer(found[1]), found[2], found[3] or ""
 
     def put(self, group: Group, answer: GroupAnswer) -> None:
-        """Stores what was found of a group in place of what was."""
+        """Stores the answer of a group in place of the earlier one."""
         conditions = (GroupDiagnosisRow.level == group.level, GroupDiagnosisRow.group_id == group.key)
         self._session.execute(delete(GroupDiagnosisRow).where(*conditions))
         document = None if answer.document is None else zlib.compress(answer.document.encode())
@@ -154,7 +158,7 @@ class Groups(Queries):
         self._session.expire_all()
 
     def put_own(self, group: Group, sentence: str) -> None:
-        """Stores what a group shows of its own, in a line."""
+        """Stores a group's own findings, in a line."""
         row = GroupDiagnosisRow
         known = update(row).where(row.level == group.level, row.group_id == group.key)
         self._session.execute(known.values(own=sentence))
@@ -238,7 +242,7 @@ class Statistics(Queries):
         return True
 
     def keep(self, session: str, record: SessionStatistics) -> None:
-        """Stores what was made."""
+        """Stores the statistics of a session."""
         self._put(session, document=zlib.compress(json_text(STORED.written(record)).encode()), attempts=0)
 
     def fail(self, session: str, why: str) -> None:
@@ -246,12 +250,12 @@ class Statistics(Queries):
         self._put(session, why=why)
 
     def release(self, session: str) -> None:
-        """Nothing was tried: whoever wants them next tries."""
+        """Releases the statistics of a session: nothing was tried, and the next who wants them tries."""
         self._session.execute(delete(SessionStatisticsRow).where(SessionStatisticsRow.session_id == session))
         self._session.expire_all()
 
     def of(self, sessions: Collection[str]) -> dict[str, SessionStatistics]:
-        """What is kept of sessions."""
+        """The stored statistics of sessions, by identifier."""
         query = select(SessionStatisticsRow.session_id, SessionStatisticsRow.document).where(
             SessionStatisticsRow.session_id.in_(tuple(sessions)),
             SessionStatisticsRow.format == FORMAT,

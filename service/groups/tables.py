@@ -1,4 +1,4 @@
-"""The tables of what sessions tell of their groups and of what groups show; all of them can be rebuilt.
+"""Tables of the statistics of sessions for their groups and of joint diagnoses; all of them can be rebuilt.
 
 A group is a unit, a unit type or a stand: ``level`` says which, ``group_id`` is its key in the table of that level.
 """
@@ -19,16 +19,16 @@ class SessionStatisticsRow(Base):
     session_id: Mapped[str] = mapped_column(ForeignKey("sessions.id"), primary_key=True)
     format: Mapped[str] = mapped_column(String(40))
     document: Mapped[bytes | None]
-    """None while they are being made, or where they cannot be."""
+    """Statistics; None while they are being made, or where they cannot be."""
     why: Mapped[str] = mapped_column(Sentence)
-    """They cannot be made; empty else."""
+    """Reason why they cannot be made; empty otherwise."""
     attempts: Mapped[int]
-    """How often they were begun: a process that dies of them says nothing."""
+    """Number of times that they were begun: a process that dies of them reports nothing."""
     estimator_version: Mapped[str] = mapped_column(String(40))
 
 
 class GroupDiagnosisRow(Base):
-    """What the sessions of a group show together, rewritten when one of them changes."""
+    """Joint diagnosis of a group's sessions, rewritten when one of them changes."""
 
     __tablename__ = "group_diagnoses"
     level: Mapped[str] = mapped_column(String(10), primary_key=True)
@@ -38,8 +38,8 @@ class GroupDiagnosisRow(Base):
     sessions: Mapped[int]
     summary: Mapped[str] = mapped_column(Sentence)
     own: Mapped[str] = mapped_column(Sentence)
-    """Of what they show, that which is of the group itself; empty for nothing."""
+    """Findings that belong to the group itself; empty for none."""
     document: Mapped[bytes | None]
-    """None where it could not be made."""
+    """imu-fleet-diagnosis/1; None where it could not be made."""
     estimator_version: Mapped[str] = mapped_column(String(40))
     created_at: Mapped[datetime]

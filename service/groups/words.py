@@ -1,4 +1,4 @@
-"""What many sessions show together, in words."""
+"""Joint diagnosis of many sessions, in words."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -41,7 +41,7 @@ def over(sessions: int) -> str:
 
 
 def summary_of_group(sessions: int, findings: Sequence[GroupFinding], *, unexplained: bool = False) -> str:
-    """What the sessions of a group show together, in one line."""
+    """The joint diagnosis of a group's sessions in one line."""
     if not sessions:
         return NO_SESSION
     if findings:
@@ -52,9 +52,8 @@ def summary_of_group(sessions: int, findings: Sequence[GroupFinding], *, unexpla
 
 
 def own_of_group(group: Group, findings: Sequence[GroupFinding], *, unexplained: bool) -> str:
-    """Of what the sessions show, that which is of the group itself; empty for nothing.
-
-    ``unexplained``: whether they share structure of its own that no cause explains.
+    """The findings that belong to the group itself, in words; empty for none.
+    ``unexplained``: whether its sessions share a structure of the group that no cause explains.
     """
     mine = (group.level.value, group.name)
     said = [statement(f) for f in findings if (f.level, f.subject) == mine]
@@ -64,7 +63,7 @@ def own_of_group(group: Group, findings: Sequence[GroupFinding], *, unexplained:
 
 
 def statement(finding: GroupFinding) -> str:
-    """What is wrong, and what it may be instead: ``A2 has a cubic nonlinearity; it could also be odd quadratic.``"""
+    """The finding and its alternatives: ``A2 has a cubic nonlinearity; it could also be odd quadratic.``"""
     if not finding.alternatives:
         return finding.sentence
     others = joined(" or ", dict.fromkeys(map(cause_name, finding.alternatives)))
@@ -110,7 +109,7 @@ def lasting_summary(scope: Scope, finding: GroupFinding) -> str:
 
 READS = "{sensor} reads high by"
 TURNS = {"δα": "the elevation α is larger by", "δβ": "the angle β is larger by"}
-"""How a line of a term begins, by the angle that it turns."""
+"""Beginning of a term's line, by the angle that it turns."""
 
 
 @dataclass(frozen=True)
@@ -118,20 +117,20 @@ class TermView:
     """A learned term, for people."""
 
     lines: tuple[tuple[str, str], ...]
-    """What is more, and by how much."""
+    """Affected quantity with ``is larger by`` or the like, and the amount."""
     whose: str
-    """Whose sessions taught it."""
+    """Unit, unit type or stand from whose sessions the term was learned."""
     worth: str
     nearest: str
     sensors: tuple[str, ...] = ()
     model: str = ""
-    """Whose model it can become part of: ``unit BA-017``; empty where the sessions name none."""
+    """Model that it can become part of: ``unit BA-017``; empty where the sessions name none."""
     accepted: tuple[int, ...] = ()
     """Revisions in force that hold it."""
 
 
 def term_view(term: EmpiricalTerm, accepted: Sequence[ModelRevision] = ()) -> TermView:
-    """What an engineer reads of a learned term; ``accepted``: the revisions that are in force."""
+    """A learned term for people; ``accepted``: the revisions that are in force."""
     scope = SCOPES.get(term.level) if term.subject else None
     near = say("{separation} standard errors from it", separation=number(term.separation, 1))
     return TermView(
@@ -186,8 +185,9 @@ def _lines(term: EmpiricalTerm) -> Iterator[tuple[str, str]]:
 
 
 def latest_in_words(shown: GroupShown) -> str:
-    """What the findings take out of the latest session at the sizes that earlier ones fixed; empty where that is not
-    known."""
+    """The reduction of the latest session's errors by the findings, at the sizes that earlier sessions fixed; empty
+    where that is not known.
+    """
     gain = shown.gain
     if gain is None or gain.before is None or gain.after is None:
         return ""
@@ -205,7 +205,7 @@ def latest_in_words(shown: GroupShown) -> str:
 
 
 def gain_in_words(gain: GroupGain | None) -> str:
-    """What the findings are worth for sessions that came later; empty where there were too few."""
+    """The gain from the findings in later sessions; empty where there were too few."""
     if gain is None:
         return ""
     before, after = (number(x, 3) for x in (gain.chi2_per_dof_before, gain.chi2_per_dof_after))
@@ -226,7 +226,7 @@ FORMS = {"same": "in all of these sessions", "varying": "on average in these ses
 MOMENT = re.compile(r"\d{4}-\d\d-\d\dT[\d:.]+(?:Z|[+-]\d\d:\d\d)?")
 """A moment as files state it, ISO 8601."""
 BLIND = "–"
-"""In place of a size that no number of such sessions shows, and of a date that is not known."""
+"""Text in place of a size that no number of such sessions shows, and of a date that is not known."""
 
 
 RULE_OUT = "These sessions do not rule out the other causes. Before you act on one, make the measurement that does."
@@ -234,7 +234,7 @@ RULE_OUT = "These sessions do not rule out the other causes. Before you act on o
 
 @dataclass(frozen=True)
 class GroupChoice:
-    """What else it could be, and what would tell."""
+    """A rival cause, and the measurement that would decide."""
 
     name: str
     share: str
@@ -264,27 +264,27 @@ class LastingEffect:
     amplitudes: tuple[str, ...]
     since: str
     spread: str
-    """From session to session, one standard deviation; empty of one that is always the same."""
+    """Scatter from session to session, one standard deviation; empty for an effect that is always the same."""
     evidence: str
     advice: str
     choices: tuple[GroupChoice, ...]
     rows: tuple[ForestRow, ...]
-    """Newest first."""
+    """Effect in single sessions, newest first."""
 
 
 @dataclass(frozen=True)
 class GroupView:
-    """What a group's sessions show together, for people."""
+    """Joint diagnosis of a group's sessions, for people."""
 
     heading: str
     summary: str
     left_out: int
     effects: tuple[LastingEffect, ...]
     structures: tuple[str, ...]
-    """Where structure lives that no cause explains."""
+    """Places of structure in the residuals that no cause explains."""
     terms: tuple[TermView, ...]
     error: str
-    """What the findings take out of the latest session, one number a sensor."""
+    """Reduction of the latest session's errors by the findings, one number a sensor."""
     gain: str
     notes: tuple[str, ...]
     limits: tuple[tuple[str, str, str], ...]
@@ -292,7 +292,7 @@ class GroupView:
 
 
 def group_view(shown: GroupShown, accepted: Sequence[ModelRevision] = ()) -> GroupView:
-    """What a technician and an engineer read of a group's answer; ``accepted``: the revisions that are in force."""
+    """The joint diagnosis for people; ``accepted``: the revisions that are in force."""
     return GroupView(
         heading=say("Diagnosis {sessions}", sessions=uncapitalised(over(shown.sessions))),
         summary="" if shown.findings or not shown.sessions else SHARED if shown.structures else SOUND,
@@ -326,13 +326,13 @@ def _effect(finding: GroupFinding, accepted: Sequence[ModelRevision]) -> Lasting
 
 
 def _spread(finding: GroupFinding) -> str:
-    """The largest of its sensors, or of what it acts on."""
+    """The largest scatter among its sensors, or among its effects."""
     largest = max(finding.spread, default=0.0)
     return measured(largest, None, amplitude_measure(finding.cause, finding.units[0], largest))
 
 
 def holds(revision: ModelRevision, finding: GroupFinding) -> bool:
-    """Whether a revision accepted what a group shows."""
+    """Whether a revision accepted a group's finding."""
     key = (revision.scope, revision.subject, revision.cause)
     theirs = (SCOPES[finding.level], finding.subject, finding.cause)
     return key == theirs and set(finding.sensors) <= set(revision.sensors)
@@ -369,12 +369,12 @@ def with_days(note: str) -> str:
 
 
 def since_in_words(form: str, since: str | None) -> str:
-    """In which of the sessions an effect is."""
+    """The sessions that have an effect, in words."""
     return FORMS.get(form) or (
         "since one of these sessions" if since is None else say("since {date}", date=day_in_words(since))
     )
 
 
 def day_in_words(started_at: str) -> str:
-    """``3 May 2026`` of what a file states."""
+    """The day of a start as stated in a file: ``3 May 2026``."""
     return day_of(moment(started_at))

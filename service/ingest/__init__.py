@@ -66,7 +66,7 @@ def _is_apart(content: bytes) -> bool:
 
 
 def apart_session(content: bytes | Path, filename: str, job: str = "session") -> CalibrationSession:
-    """The same, read in a separate process."""
+    """The session, read in a separate process."""
     session = read_apart(job, content, filename)
     assert isinstance(session, CalibrationSession)
     return session

@@ -86,7 +86,7 @@ class _Reporter:
 
 
 def progress_reporter() -> ProgressReporter:
-    """Of this process."""
+    """The progress reporter of this process."""
     return _Reporter.progress_reporter
 
 
@@ -174,7 +174,7 @@ def _refused_if_process_ended(filename: str, most: Limits) -> Iterator[None]:
 
 @contextmanager
 def turn() -> Iterator[None]:
-    """Holds a slot for reading in a separate process until all work on the file is done: what it holds may be large."""
+    """Holds a slot for reading in a separate process until all work on the file is done: its contents may be large."""
     with _slots.taken(limits.in_force().at_once):
         yield
 
@@ -298,7 +298,7 @@ class _ForkServer:
         return True
 
     def _start(self) -> None:
-        """Its standard input is the connection; it ends when that closes with this process."""
+        """Starts the process. Its standard input is the connection; it ends when that closes with this process."""
         self.stop()
         self._control, theirs = socket.socketpair()
         self._localer = os.getpid()

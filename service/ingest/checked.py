@@ -18,7 +18,7 @@ from service.kit.text import fault_of_text, with_plain_ends
 LONGEST_NOTES = 20_000
 """Characters of notes and operator: some pages, so that no upload fills the database."""
 CLOCK_LEEWAY = timedelta(days=1)
-"""How far a date may lie ahead: a stand's clock in another time zone is up to a day ahead."""
+"""Largest lead of a date over the clock: a stand in another time zone is up to a day ahead."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,11 +27,11 @@ class Checked:
 
     session: CalibrationSession
     measured_at: datetime
-    """With the offset that the file states; the upload's time, UTC, when it does not say."""
+    """Start of the measurement with the offset in the file; the upload's time, UTC, where the file has none."""
     type_name: str
     """Name of the unit's type for its first session: from the file, or a description."""
     stand: str | None
-    """Where it was measured."""
+    """Stand of the measurement; None without one."""
 
     @cached_property
     def readings_digest(self) -> str:

@@ -41,7 +41,7 @@ def pack(answer: object) -> Packed:
 
 
 def unpack(line: bytes, most_bytes: int, receive: Callable[[Array], None]) -> Any:
-    """The same; ``receive`` fills an array. Raises one of `DAMAGED` for a malformed line."""
+    """Reads a packed answer; ``receive`` fills an array. Raises one of `DAMAGED` for a malformed line."""
     header = json.loads(line)
     forms = [(np.dtype(str(kind)), tuple(map(int, shape))) for kind, shape in header["arrays"]]
     if any(dtype.kind not in DTYPE_KINDS or min(shape, default=0) < 0 for dtype, shape in forms):
@@ -52,7 +52,7 @@ def unpack(line: bytes, most_bytes: int, receive: Callable[[Array], None]) -> An
 
 
 def plain_bytes(array: Array) -> memoryview:
-    """Its bytes, without a copy where the array is contiguous."""
+    """The bytes of an array, without a copy where it is contiguous."""
     return np.ascontiguousarray(array).reshape(-1).view(np.uint8).data
 
 

@@ -7,7 +7,7 @@ from estimator.errors import FormatError, Problem
 from service.ingest.formats import is_binary, start_of
 
 START = 256
-"""Bytes that tell what a file is."""
+"""Bytes from which the kind of file is recognised."""
 JPEG = "is a picture (JPEG); type or export its readings into a table and upload that as XLSX or CSV"
 PNG = "is a picture (PNG); type or export its readings into a table and upload that as XLSX or CSV"
 OTHER_PICTURE = "is a picture; type or export its readings into a table and upload that as XLSX or CSV"
@@ -28,10 +28,10 @@ KINDS = (
     (0, b"\x1f\x8b\x08", ARCHIVE), (0, b"7z\xbc\xaf\x27\x1c", ARCHIVE), (0, b"Rar!\x1a\x07", ARCHIVE),
     (0, b"\xfd7zXZ\0", ARCHIVE), (0, b"\x28\xb5\x2f\xfd", ARCHIVE), (0, b"BZh", ARCHIVE),
 )  # fmt: skip
-"""Byte at which it stands, what stands there, and what is said."""
+"""Place of the first byte, the bytes, and the refusal."""
 WEB_PAGE = (b"<!doctype html", b"<html")
 MEMBERS = (("word/", DOCX), ("ppt/", SLIDES), ("xl/workbook.bin", XLSB))
-"""Of archives, by the beginning of a member's name."""
+"""Refusals of archives, by the beginning of a member's name."""
 
 
 def require_table(content: bytes | Path, filename: str) -> None:
@@ -46,7 +46,7 @@ def require_table(content: bytes | Path, filename: str) -> None:
 
 
 def require_workbook(members: Iterable[str], filename: str) -> None:
-    """The same for an archive that is no workbook, by the names of its members."""
+    """Refuses an archive that is no workbook, by the names of its members."""
     names = tuple(members)
     for beginning, said in MEMBERS:
         if any(name.startswith(beginning) for name in names):

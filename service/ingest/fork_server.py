@@ -58,7 +58,7 @@ def _served(control: socket.socket) -> bool:
 
 
 def _answer_and_end(control: socket.socket, connection: socket.socket) -> None:
-    """In the fork; a fault of a reader ends it too, with a traceback."""
+    """Answers in the fork and ends it; a fault of a reader ends it too, with a traceback."""
     control.close()
     _quieten_libraries()
     _answer(connection)

@@ -64,7 +64,7 @@ def _frames(rows: TableScan, names: list[str], filename: str) -> Iterator[pl.Dat
 
 
 Content = bytes | Path
-"""Of a file, or its path."""
+"""Bytes of a file, or its path."""
 Reader = Callable[[bytes, str], dict[str, object]]
 
 NO_MAPPING = (
@@ -143,4 +143,4 @@ JOBS: dict[str, Callable[[Content, str], object]] = {
 }
 """Name → function."""
 PARTED: dict[str, Callable[[Path, str], Iterator[object]]] = {"recording": recording}
-"""The same for answers in parts."""
+"""Jobs that answer in parts, by name."""

@@ -34,7 +34,7 @@ CHUNK_CELLS = 250_000
 SAMPLE_ROWS = 1_000
 """Rows from which it is decided whether a column of a CSV is numeric."""
 SEPARATORS = ",;\t"
-"""Of columns; the most frequent in the header is taken."""
+"""Possible separators of columns; the most frequent in the header is taken."""
 UNREADABLE = (pl.exceptions.PolarsError, pl.exceptions.PanicException, OSError)
 """Raised by polars for damaged files."""
 START = 4096
@@ -51,7 +51,7 @@ class TableScan(Protocol):
 
     @property
     def names(self) -> Sequence[str]:
-        """Of all columns."""
+        """Names of all columns."""
 
     def count(self, most: int) -> int:
         """Number of rows; counting may stop above ``most``."""
@@ -71,7 +71,7 @@ def rows_of(path: Path, filename: str) -> TableScan | None:
 
 @dataclass(frozen=True)
 class ParquetRows:
-    """Of a Parquet file, whose row groups are unpacked one after another."""
+    """Rows of a Parquet file, whose row groups are unpacked one after another."""
 
     path: Path
     filename: str
@@ -79,7 +79,7 @@ class ParquetRows:
     names: Sequence[str]
 
     def count(self, most: int) -> int:
-        """As stated in the file."""
+        """The number of rows, as stated in the file."""
         return int(pl.scan_parquet(self.path).select(pl.len()).collect().item())
 
     def stretches(self, names: Sequence[str]) -> Iterator[pl.DataFrame]:
@@ -106,7 +106,7 @@ def parquet_rows(path: Path, filename: str) -> ParquetRows:
 
 @dataclass(frozen=True)
 class CsvRows:
-    """Of a CSV file with its metadata in # lines."""
+    """Rows of a CSV file with its metadata in # lines."""
 
     path: Path
     metadata: str
@@ -118,7 +118,7 @@ class CsvRows:
     """Columns that are not numeric."""
 
     def count(self, most: int) -> int:
-        """By line ends."""
+        """The number of rows, counted by line ends."""
         rows = 0
         for text in self._stretches():
             rows += text.count(b"\n") + (not text.endswith(b"\n"))
@@ -186,7 +186,7 @@ def csv_rows(path: Path, filename: str) -> CsvRows:
 
 
 def numbers(texts: pl.Series) -> pl.Series:
-    """As numbers where all are numeric, else unchanged."""
+    """The texts as numbers where all are numeric, else unchanged."""
     stripped = texts.str.strip_chars()
     stripped = stripped.set(stripped == "", None)
     numbers = stripped.cast(pl.Float64, strict=False)
@@ -236,11 +236,11 @@ class _Codes:
 
 @dataclass
 class _Passage:
-    """What passages through a log have shown of it as a whole."""
+    """Properties of a log as a whole, found by passages through it."""
 
     signs: dict[str, int] = field(default_factory=dict)
     screening: Screening = ()
-    """Of the last whole passage."""
+    """Findings of the last whole passage."""
     stands: bool = False
     """Whether the times never advance."""
 
@@ -251,7 +251,7 @@ class _Scan:
 
     rows: TableScan
     document: Mapping[str, object]
-    """Without its table."""
+    """Session document without its table."""
     filename: str
     passage: _Passage = field(default_factory=_Passage)
 
@@ -339,7 +339,7 @@ class _Scan:
 
 
 def ahead(frames: Iterator[pl.DataFrame]) -> Iterator[pl.DataFrame]:
-    """The same, reading the next frame while one is processed."""
+    """The frames, reading the next one while one is processed."""
     with ThreadPoolExecutor(1) as reader:
         pending = reader.submit(next, frames, None)
         while (frame := pending.result()) is not None:

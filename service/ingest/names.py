@@ -10,7 +10,7 @@ INVISIBLE = ("Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp")
 """Categories of invisible characters: control, format (direction, zero width), surrogate, private, unassigned, line
 ends."""
 DOT_SEGMENTS = ("", ".", "..")
-"""Between slashes: what browsers remove from an address."""
+"""Parts between slashes that browsers remove from an address."""
 
 
 def plain_name(text: str) -> str:
@@ -19,7 +19,7 @@ def plain_name(text: str) -> str:
 
 
 def fault_of_name(text: str) -> str | None:
-    """What is wrong with a name; None where nothing is."""
+    """The fault of a name; None where there is none."""
     if len(text) > LONGEST_NAME:
         return say(
             "is {length} characters long; at most {longest_name} are kept", length=len(text), longest_name=LONGEST_NAME
@@ -32,5 +32,5 @@ def fault_of_name(text: str) -> str | None:
 
 
 def fault_of_serial(text: str) -> str | None:
-    """The same of a serial number, which is required."""
+    """The fault of a serial number, which is required; None where there is none."""
     return fault_of_name(text) if text else "is empty; write the unit's serial number"

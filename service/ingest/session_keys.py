@@ -44,7 +44,7 @@ KEY_HINTS = {
     "position_m": "Position of the sensor: three numbers in metres, block axes.",
     "direction_sigma_deg": "Uncertainty of the stated directions, one sigma, degrees.",
 }
-"""By the whole key, or by its last part."""
+"""Hints by the whole key, or by its last part."""
 COLUMN_HINTS = {
     "run": "direct, or flipped with the block turned by 180° about the platform's Z axis.",
     "beta_deg": "Turn of the head, degrees.",

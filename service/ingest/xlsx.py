@@ -174,13 +174,13 @@ def _row(place: str) -> int:
 
 
 BOOLEANS = ("true", "false")
-"""How the library writes a boolean cell, which as a number would be 1 or 0."""
+"""Texts by which the library gives a boolean cell, which as a number would be 1 or 0."""
 DType = Literal["string", "float"]
 Cell = float | str | None
 Names = tuple[str, str]
-"""Of the two sheets of a session, as named in a workbook."""
+"""Names of the two sheets of a session, in a workbook."""
 SHEETS = ("session", "readings")
-"""Their English names."""
+"""English names of the two sheets."""
 
 
 def read_xlsx(content: bytes, filename: str) -> dict[str, object]:
@@ -189,7 +189,7 @@ def read_xlsx(content: bytes, filename: str) -> dict[str, object]:
 
 
 def read_with_places(content: bytes, filename: str) -> tuple[dict[str, object], Where]:
-    """The same, with a function from field and row to the cell."""
+    """The session document of a workbook, with a function from field and row to the cell."""
     check_workbook(content, filename)
     names, session, readings = _sheets(content, filename)
     problems = Problems(filename, in_force().extent)
@@ -229,7 +229,7 @@ def letters_of(number: int) -> str:
 
 
 def sheet_names(content: bytes, filename: str) -> tuple[str, ...]:
-    """Of a workbook."""
+    """The names of a workbook's sheets."""
     check_workbook(content, filename)
     try:
         return tuple(fastexcel.read_excel(content).sheet_names)

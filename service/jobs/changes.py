@@ -69,7 +69,7 @@ def _pieces(store: Store, new: NewJob) -> int:
 
 
 def may_cancel(job: Job, person: Person) -> bool:
-    """Whoever requested it, and engineers."""
+    """Whether a person may cancel a job: its requester and engineers may."""
     return person.may(Role.ENGINEER) or bool(job.account and job.account == person.login)
 
 
@@ -128,12 +128,12 @@ class UploadHooks:
     """Hooks of one upload. An exception raised by a hook stops it, and nothing is stored."""
 
     keeping: Callable[[], None] = _no_op
-    """Before its bytes are stored, when its readings are valid."""
+    """Called before its bytes are stored, when its readings are valid."""
     stored: Callable[[Store, Receipt], None] = _no_op
-    """Within the transaction that stores it."""
+    """Called within the transaction that stores it."""
     refused: Callable[[Store, int], None] = _no_op
-    """Within the transaction that records the refusal, with its number."""
+    """Called within the transaction that records the refusal, with its number."""
 
 
 NO_HOOKS = UploadHooks()
-"""Of an upload whose sender waits for the answer."""
+"""Hooks of an upload whose sender waits for the answer."""

@@ -15,7 +15,7 @@ KEPT = timedelta(days=7)
 
 
 class JobKind(StrEnum):
-    """What is done."""
+    """Kinds of long work."""
 
     RECALIBRATION = "recalibration"
     """Stored sessions computed again under the models in force, unit by unit."""
@@ -38,7 +38,7 @@ class JobState(StrEnum):
 
 
 OPEN = (JobState.WAITING, JobState.RUNNING)
-"""Not ended or cancelled."""
+"""States of a job that is neither ended nor cancelled."""
 
 
 KILOBYTE = 1000
@@ -56,13 +56,13 @@ class NewJob:
     scope: Scope | None = None
     """One unit, one unit type or one stand; None for the whole fleet."""
     subject: str = ""
-    """Its name; empty for the whole fleet."""
+    """Name of the unit, unit type or stand; empty for the whole fleet."""
     form: str = ""
-    """Of a report: xlsx or pdf."""
+    """Form of a report: xlsx or pdf."""
     language: str = ""
-    """Of a report."""
+    """Language of a report."""
     revision: int = 0
-    """Of the changed model."""
+    """Revision of the changed model."""
     sent: Sent | None = None
     """The uploaded file; ``subject`` is its name."""
 
@@ -75,7 +75,7 @@ class JobFailure:
     subject: str
     """Serial number of the unit; empty for the whole."""
     reason: str
-    """Why, and what helps."""
+    """Reason for the failure, and the remedy."""
 
 
 @dataclass(frozen=True)
@@ -93,13 +93,13 @@ class Made:
     """The file that a job made."""
 
     filename: str
-    """Name for whoever keeps it."""
+    """Name for saving it."""
     size: int
     """Bytes."""
     sha256: str
     """SHA-256 of its content, hexadecimal."""
     until: datetime
-    """It is kept until then."""
+    """Time until which it is kept, UTC."""
 
 
 @answer
@@ -110,33 +110,33 @@ class Job:
     id: int
     """Number of the job."""
     kind: JobKind
-    """What kind of work."""
+    """Kind of work."""
     scope: Scope | None
-    """None for the whole fleet."""
+    """Scope of the work; None for the whole fleet."""
     subject: str
     """Serial number or name; of an upload the file's; empty for the whole fleet."""
     form: Hidden[str]
     language: Hidden[str]
     revision: Hidden[int]
     who: str
-    """Who asked for it."""
+    """Person who asked for it."""
     account: Hidden[str]
     state: JobState
-    """How far it is."""
+    """Progress of the job."""
     asked_at: datetime
-    """When it was asked for, UTC."""
+    """Time of the request, UTC."""
     begun_at: datetime | None
-    """When it was begun, UTC; none while it waits."""
+    """Start, UTC; none while it waits."""
     ended_at: datetime | None
-    """When its last piece was begun, UTC; none while it is not ended."""
+    """Start of its last piece, UTC; none while it is not ended."""
     cancelled_by: str
-    """Who cancelled it; empty where nobody did."""
+    """Person who cancelled it; empty where nobody did."""
     done: int
     """Pieces that are whole: of a recalibration, units; of an upload, kilobytes read."""
     total: int
     """Pieces in all."""
     cursor: Hidden[int]
-    """The last finished piece, after which work resumes."""
+    """Last finished piece, after which work resumes."""
     recomputed: int
     """Sessions that have another calibration since."""
     verdicts: int
@@ -144,30 +144,30 @@ class Job:
     failed: int
     """Pieces that could not be done."""
     failures: tuple[JobFailure, ...]
-    """The first hundred of them."""
+    """Pieces that failed, the first hundred of them."""
     held_up: str
-    """Why it waits although it was begun; empty where it does not."""
+    """Reason why it waits although it was begun; empty where it does not."""
     made: Made | None
-    """What it made, at `/jobs/{id}/file`."""
+    """The file that it made, at `/jobs/{id}/file`."""
     sent: Hidden[Sent | None] = None
     """The uploaded file: ``done`` of its ``total`` kilobytes were read in this pass, after ``cursor`` passes."""
     is_storing: Hidden[bool] = False
     """Whether that file is being stored and can no longer be cancelled."""
     session: str = ""
-    """Of an upload: the session that it became; empty while it is none."""
+    """Id of the session that an upload became; empty while it is none."""
     refusal: Hidden[int | None] = None
     """Number of its refusal, where it could not be used."""
 
     @computed_field  # type: ignore[prop-decorator]  # the one way to describe a property
     @property
     def times(self) -> int:
-        """Of an upload: how often all of it was read already; a log is read several times."""
+        """Number of times that all of an upload was read already; a log is read several times."""
         return self.cursor if self.kind is JobKind.UPLOAD else 0
 
     @computed_field  # type: ignore[prop-decorator]  # the one way to describe a property
     @property
     def upload(self) -> str:
-        """Of an upload: its id at `/uploads/{id}`, which says what becomes of it."""
+        """Id of an upload at `/uploads/{id}`, which gives its outcome."""
         return under_way(self.id) if self.kind is JobKind.UPLOAD else ""
 
     @property

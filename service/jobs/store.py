@@ -67,7 +67,7 @@ class Jobs(Queries):
         return self._found(_JOBS.where(*same).order_by(JobRow.id))
 
     def places(self) -> frozenset[str]:
-        """Where the files of open jobs are stored."""
+        """The places of the files of open jobs."""
         conditions = (JobRow.kind == JobKind.UPLOAD, JobRow.ended_at.is_(None))
         return frozenset(
             sent["place"] for sent in self._session.scalars(select(JobRow.sent).where(*conditions)) if sent
@@ -221,7 +221,7 @@ class Jobs(Queries):
 
 _WORK = or_(work_of(WorkKind.JOB, JobRow.id), work_of(WorkKind.UPLOAD, JobRow.id))
 _JOBS = select(JobRow, WorkRow.failed, WorkRow.lease_until).outerjoin(WorkRow, _WORK)
-"""With their lease in the queue."""
+"""Jobs with their lease in the queue."""
 
 
 def _record(row: JobRow, held_up: str = "", *, is_leased: bool = False) -> Job:
@@ -244,7 +244,7 @@ def _sent(document: Json) -> Sent:
 
 
 RECENT = timedelta(days=7)
-"""How long failed jobs and messages are listed: nothing else removes them."""
+"""Time for which failed jobs and messages are listed: nothing else removes them."""
 
 
 Text = ColumnElement[str] | InstrumentedAttribute[Any]

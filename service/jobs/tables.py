@@ -44,10 +44,10 @@ class JobRow(Base):
     size: Mapped[int] = mapped_column(BYTES)
     sha256: Mapped[str] = mapped_column(String(64))
     kept_until: Mapped[datetime | None]
-    """Of its file; NULL where there is none any more."""
+    """Time until which its file is kept; NULL where there is none any more."""
     sent: Mapped[Json | None] = mapped_column(JSON(none_as_null=True))
-    """Of an upload: the received file, as `Sent`; its hash is in ``sha256``."""
+    """Received file of an upload, as `Sent`; its hash is in ``sha256``."""
     is_storing: Mapped[bool] = mapped_column(server_default=false())
-    """Of an upload: the holder of its lease is storing it."""
+    """Whether the holder of the lease is storing the upload."""
     session: Mapped[str] = mapped_column(String(20), server_default="")
     refusal: Mapped[int | None]

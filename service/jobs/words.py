@@ -23,7 +23,7 @@ STATES = {
 
 
 def title_of(job: Job) -> str:
-    """What is done, and to what."""
+    """The kind of work and its subject."""
     if job.kind is JobKind.REPORT:
         return FLEET_REPORTS[job.form]
     if job.kind is JobKind.UPLOAD:
@@ -42,7 +42,7 @@ def title_of(job: Job) -> str:
 
 
 def left_in_words(count: int) -> str:
-    """Why sessions of a unit were left as before, and what helps."""
+    """The reason why sessions of a unit were left as before, and the remedy."""
     return say(
         "{sessions} left as before: the file is lost, or cannot be calibrated under the model in "
         "force. Upload a lost file again; withdraw an accepted cause that does not fit.",
@@ -51,7 +51,7 @@ def left_in_words(count: int) -> str:
 
 
 def progress_of(job: Job) -> str:
-    """How far it is."""
+    """Progress in words."""
     if job.kind is JobKind.UPLOAD:
         return _upload_progress(job)
     if job.kind is JobKind.REPORT:
@@ -60,7 +60,7 @@ def progress_of(job: Job) -> str:
 
 
 def _upload_progress(job: Job) -> str:
-    """Of a file: megabytes, and finished passes."""
+    """Progress of an upload: megabytes, and finished passes."""
     if not job.is_open:
         return ""
     if job.is_storing:
@@ -100,7 +100,7 @@ def _upload_outcome(job: Job) -> str:
 
 
 def ending_of(job: Job) -> str:
-    """What its end means; empty while it is open."""
+    """The consequence of the job's end; empty while it is open."""
     if job.kind is JobKind.UPLOAD:
         return "Cancelled: nothing was stored, and the file is gone." if job.state is JobState.CANCELLED else ""
     match job.state:

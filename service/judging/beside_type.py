@@ -1,8 +1,8 @@
 """Step: a session that would become a reference beside the other units of its type: can it be one of them?
 
-Sensor by sensor against the references of the type's other units: scale factor, zero, nonlinearity, direction and how
-well they are known. A type whose units differ says so itself: what counts as far is counted in its own spread (robust,
-what the sessions are uncertain of taken off) and in the tolerance, whichever is wider.
+Sensor by sensor it is compared with the references of the type's other units: scale factor, zero, nonlinearity,
+direction and their uncertainties. The distance that counts as far follows the type: it is measured in the spread of its
+units (robust, less the uncertainty of the sessions) or in the tolerance, whichever is wider.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -23,25 +23,26 @@ FEWEST = 5
 MOST = 60
 """References, the newest: enough for a spread, and a millisecond to read."""
 FAR = 50.0
-"""Spreads, and tolerances, that no unit of a type lies apart: a slip of a factor is a hundred and more, and what a
-unit may do by itself, its tolerances judge later."""
+"""Multiple of the spread, and of the tolerance, that no unit of a type lies apart: a mistaken factor gives a hundred
+and more, and smaller changes of a unit are judged by its tolerances later.
+"""
 COARSE = 100.0
 """Ratio of uncertainties beyond what more positions or longer averages can do: ten thousand times the readings."""
 RAYLEIGH = 1.1774
 """Median of the length of a two-vector, in sigmas of a component."""
 NEAR = float(np.cos(np.radians(10.0)))
-"""Within it an axis is that of a sensor."""
+"""Cosine of the angle within which an axis is taken for that of a sensor."""
 ANOTHER = "the readings contain an offset, or the connected sensor is not the one in the file"
 Tolerances = Mapping[tuple[str, str], float]
-"""By kind of sensor and parameter, SI or relative."""
+"""Tolerances by kind of sensor and parameter, SI or relative."""
 
 
 @dataclass(frozen=True)
 class Type:
-    """What the references of other units say."""
+    """Values in the references of other units."""
 
     values: Mapping[tuple[str, str], tuple[ParameterValue, ...]]
-    """By sensor and parameter; of those with enough units only."""
+    """Values by sensor and parameter, only where enough units have them."""
     tolerances: Tolerances
 
     def scales(self) -> dict[str, float]:
@@ -50,12 +51,12 @@ class Type:
                 if parameter == "scale"}  # fmt: skip
 
     def far(self, kind: str, parameter: str, width: float) -> float:
-        """What no unit lies apart, unit of the parameter."""
+        """The distance that no unit reaches, unit of the parameter."""
         return FAR * max(width, self.tolerances.get((kind, parameter), 0.0))
 
 
 def type_of_references(values: Sequence[ParameterValue], tolerances: Tolerances) -> Type:
-    """Of the values of other units' references."""
+    """The type from the values of other units' references."""
     grouped: dict[tuple[str, str], list[ParameterValue]] = {}
     for value in values:
         if value.value is not None or value.axis is not None:
@@ -64,7 +65,7 @@ def type_of_references(values: Sequence[ParameterValue], tolerances: Tolerances)
 
 
 def beside_type(sensors: Sequence[SensorCalibration], peers: Type) -> Iterator[Doubt]:
-    """What no unit of the type has; the scale factors apart."""
+    """The doubts about values that no unit of the type has, except scale factors."""
     for parameter, name in (("bias", "bias"), ("quadratic", "quadratic term")):
         away = {s.name: d for s in sensors if (d := _distance(s, parameter, peers)) is not None}
         if away:
@@ -84,7 +85,7 @@ def beside_type(sensors: Sequence[SensorCalibration], peers: Type) -> Iterator[D
 
 
 def _distance(sensor: SensorCalibration, parameter: str, peers: Type) -> float | None:
-    """From the type's median, SI, of a value that is too far from it."""
+    """The distance of a value from the type's median, SI, where it is too far; None otherwise."""
     known, seen = peers.values.get((sensor.name, parameter), ()), getattr(sensor, parameter)
     if not known or seen.value is None or (sensor.kind, parameter) not in MEASURES:
         return None

@@ -1,7 +1,7 @@
 """Step: a checked session → its calibration under the model in force.
 
-A recording in service has none of its own: it is compared with its unit's calibration, and that calibration is moved by
-what the recording shows.
+A recording in service has none of its own: it is compared with its unit's calibration, which is moved by the change
+that the recording shows.
 """
 
 from dataclasses import dataclass, replace
@@ -22,7 +22,7 @@ from service.storage.queries import Store
 
 @dataclass(frozen=True, eq=False)
 class CalibrationBasis:
-    """What is stored already that the calibration of a session rests on."""
+    """Stored basis of a session's calibration."""
 
     model: Model
     compared_with: Calibration | None
@@ -36,7 +36,7 @@ class ReferenceComparison:
     reference: Calibration
     result: ParityResult
     started_at: str | None = None
-    """Of the recording, in UTC; None where its file does not say."""
+    """Start of the recording, UTC; None where its file does not state it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,21 +45,23 @@ class Calibrated:
 
     checked: Checked
     model: Model
-    """That it was calibrated under."""
+    """Model of the calibration."""
     calibration: Calibration
     comparison: ReferenceComparison | None
-    """Of a recording in service; None for every other programme."""
+    """Comparison of a recording in service; None for every other programme."""
 
 
 def basis_of(store: Store, new: Checked, model: Model) -> CalibrationBasis:
-    """What a calibration under a model needs of the store; ScheduleError for a recording of an uncalibrated unit."""
+    """The stored basis of a calibration under a model; ScheduleError for a recording of an uncalibrated unit."""
     is_recording = new.session.programme == IN_SERVICE
     return CalibrationBasis(model, calibration_to_compare_with(store, new) if is_recording else None)
 
 
 @outside_writing
 def calibrate(new: Checked, basis: CalibrationBasis) -> Calibrated:
-    """The numerical part, with no store at hand; SessionError where the session cannot tell what it should."""
+    """The calibration of a session, computed without access to the store; SessionError where the session does not
+    determine what its programme requires.
+    """
     if basis.compared_with is None:
         return Calibrated(new, basis.model, _under(basis.model, new.session), None)
     found = ReferenceComparison(
@@ -70,20 +72,21 @@ def calibrate(new: Checked, basis: CalibrationBasis) -> Calibrated:
 
 
 def rests_on_model(programme: str) -> bool:
-    """Whether accepted causes change what sessions of a programme give: by their own fit, or by what they are compared
-    with."""
+    """Whether accepted causes change the results of sessions of a programme: by their own fit, or by the calibration
+    that they are compared with.
+    """
     return programme in CALIBRATIONS or programme == IN_SERVICE
 
 
 def _under(model: Model, session: CalibrationSession) -> Calibration:
-    """Under a model; a session that a cause of it does not show is calibrated without that cause."""
+    """The calibration under a model; where a session does not show one of its causes, without that cause."""
     if (model.causes or model.fixed) and session.programme in CALIBRATIONS:
         return calibrate_with(session, model.fixed, model.causes)
     return calibrate_baseline(session)
 
 
 def parameter_values(calibration: Calibration) -> tuple[ParameterValue, ...]:
-    """Every parameter that the session speaks of; what was not observed has neither value nor uncertainty."""
+    """Every parameter that the session concerns; one that was not observed has neither value nor uncertainty."""
     return tuple(
         _value(index, sensor, parameter)
         for index, sensor in enumerate(calibration.sensors)

@@ -1,8 +1,8 @@
-"""How large a named cause is in the unit of a tolerance: what it does to a zero, a scale factor or a direction.
+"""Size of a named cause in the unit of a tolerance: its effect on a zero, a scale factor or a direction.
 
-A cause that acts at the input counts as what it adds to a reading, a coefficient times what the session gave it to act
-on: the span of time or temperature from end to end, of a square that of half the span about the middle, or the input
-itself. One that scales the input counts as a relative change, one that turns something as an angle.
+A cause that acts at the input counts by its contribution to a reading: a coefficient times the variable in the session.
+That variable is the span of time or temperature from end to end, for a square that of half the span about the middle,
+or the input itself. A cause that scales the input counts as a relative change, one that turns something as an angle.
 """
 
 from collections.abc import Iterator, Mapping
@@ -21,7 +21,7 @@ from estimator.session import ACCELEROMETER, GYROSCOPE
 from service.kit.measures import leading_kind
 
 INPUTS = {ACCELEROMETER: STANDARD_GRAVITY, GYROSCOPE: EARTH_RATE}
-"""What a sensor on a stand or at rest feels at most, m/s² (rad/s)."""
+"""Largest input of a sensor on a stand or at rest, m/s² (rad/s)."""
 ACTS_ON = {
     "1": ("scale", "nothing"),
     "1/K": ("scale", "temperature"),
@@ -37,44 +37,45 @@ ACTS_ON = {
     "(input)/(m/s²)": ("bias", "gravity"),
     "rad": ("axis", "nothing"),
 }
-"""By the SI unit of an amplitude: the parameter whose tolerance it is held against, and what the session multiplies it
-by. ``input`` is m/s² or rad/s."""
+"""Parameter whose tolerance an amplitude is held against, and the variable in the session that multiplies it, by the
+amplitude's SI unit. ``input`` is m/s² or rad/s.
+"""
 
 
 @dataclass(frozen=True)
 class Size:
-    """How large something is beside a tolerance."""
+    """Size of an effect beside a tolerance."""
 
     sensors: tuple[str, ...]
-    """The one where it is largest; empty for what acts on all."""
+    """Sensor where it is largest; empty for an effect on all."""
     kind: str
-    """Of the sensor."""
+    """Kind of the sensor."""
     parameter: str
     value: float
     """SI; relative for a scale factor."""
     sigma: float | None
-    """None where it is not known."""
+    """Standard uncertainty; None where it is not known."""
     tolerance: float
 
     @property
     def share(self) -> float:
-        """Of the tolerance."""
+        """Share of the tolerance."""
         return self.value / self.tolerance
 
 
 @dataclass(frozen=True)
 class Yardstick:
-    """What sizes are worked out and held against."""
+    """Basis of sizes: calibration, residuals and tolerances."""
 
     calibration: Calibration
     residuals: Residuals
-    """Under the baseline."""
+    """Residuals under the baseline."""
     tolerances: Mapping[tuple[str, str], float]
-    """By kind of sensor and parameter."""
+    """Tolerances by kind of sensor and parameter."""
 
 
 def size_of_cause(finding: Finding, yardstick: Yardstick) -> Size | None:
-    """Where and how much a named cause weighs most; None where no tolerance is set for what it changes."""
+    """The largest size of a named cause by its share of a tolerance; None where no tolerance is set for its effects."""
     return max(_sizes(finding, yardstick), key=lambda size: size.share, default=None)
 
 
@@ -90,7 +91,7 @@ def size_of_structure(structure: Structure, yardstick: Yardstick) -> Size | None
 
 
 def _sizes(finding: Finding, yardstick: Yardstick) -> Iterator[Size]:
-    """Of every sensor that the cause acts on, or of all together."""
+    """The sizes for every sensor that the cause acts on, or for all together."""
     count = max(1, len(finding.sensors))
     width = len(finding.amplitude) // count
     known = find(finding.cause)
@@ -129,7 +130,7 @@ def _left(finding: Finding, k: int) -> float:
 
 
 def _effect(cause: str, unit: str, kind: str, residuals: Residuals) -> tuple[str | None, float]:
-    """The parameter that an amplitude is held against, and what it is multiplied by."""
+    """The parameter that an amplitude is held against, and the factor on it."""
     known = find(cause)
     if known is not None and known.grows_an_angle:
         return "axis", _span(residuals.time)
@@ -140,7 +141,7 @@ def _effect(cause: str, unit: str, kind: str, residuals: Residuals) -> tuple[str
 
 
 def by_input(unit: str) -> str:
-    """``input/K`` of ``m/s²/K``; what is per unit of specific force stays so."""
+    """The unit in terms of the input, ``input/K`` for ``m/s²/K``; a unit per specific force stays so."""
     head = unit.removesuffix("/(m/s²)")
     return f"{head.replace('m/s²', 'input').replace('rad/s', 'input')}{unit[len(head) :]}"
 

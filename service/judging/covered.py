@@ -19,10 +19,11 @@ class CoveredTemperatures:
     """The temperatures that a calibration covers, °C."""
 
     lowest: float
-    """Of every reading of the reference, of the sessions since that are within tolerance, and of the sessions that the
-    temperature law was learned from."""
+    """Lowest temperature of the reference, of the sessions since that are within tolerance, and of the sessions that
+    the temperature law was learned from.
+    """
     highest: float
-    """Of the same."""
+    """Highest temperature of the same sessions."""
     reference: float
     """Mean of the reference, whose parameters the others are compared with."""
 
@@ -30,8 +31,9 @@ class CoveredTemperatures:
 def covered(
     reference: Residuals, measured: Iterable[tuple[float | None, Verdict]], steps: Iterable[TemperatureStep] = ()
 ) -> CoveredTemperatures | None:
-    """By a reference, temperatures and verdicts of sessions since, and the law of the last of them; None where the
-    reference's is not known."""
+    """The temperatures covered by a reference, by sessions since with their verdicts, and by the temperature law of the
+    last of them; None where the reference's temperature is not known.
+    """
     if reference.temperature is None:
         return None
     of_reference = [float(celsius) for celsius in reference.temperature]

@@ -1,4 +1,4 @@
-"""What the temperatures that a unit's calibrations cover are taken from, in one statement."""
+"""Stored values behind the temperatures that a unit's calibrations cover, in one statement."""
 
 from dataclasses import dataclass
 
@@ -16,14 +16,14 @@ from service.units.tables import UnitRow
 
 @dataclass(frozen=True)
 class CoveringRows:
-    """What is stored of a unit's temperatures up to a session."""
+    """Stored temperatures of a unit up to a session."""
 
     reference: bytes | None
     """Calibration in force of the session that it is judged against; None where there is none."""
     measured: tuple[tuple[float | None, Verdict], ...]
     """Temperature, °C, and verdict of the earlier sessions of its epoch."""
     steps: tuple[TemperatureStep, ...]
-    """What its own temperature is worth."""
+    """Effects of the session's own temperature."""
 
 
 class Covering(Queries):
@@ -60,7 +60,7 @@ def _reference(session: StoredSession, programmes: tuple[str, ...]) -> Subquery:
 
 
 def _earlier(session: StoredSession, most: int) -> Subquery:
-    """The last ones of the same programme, not before the epoch of the session."""
+    """The last sessions of the same programme, not before the epoch of the session."""
     since, _ = epoch_bounds(UnitRow.id.expression, session.started_at)
     query = select(SessionRow.temperature, SessionRow.verdict).join(UnitRow, UnitRow.id == SessionRow.unit_id)
     earlier = query.where(

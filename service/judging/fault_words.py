@@ -1,4 +1,4 @@
-"""What is said of a sensor that fails within a recording in service: what it does, since when, how much, what to do."""
+"""A sensor that fails within a recording in service, in words: the fault, its start, its size and the remedy."""
 
 from datetime import timedelta
 
@@ -43,7 +43,7 @@ REMEDIES = {
     EXCHANGED: "check the wiring and the columns of {who}, and upload the recording again corrected",
     INTERMITTENT: "check the connector of {who}",
 }
-"""Of the other kinds the sensor is replaced or repaired."""
+"""Remedies by kind of fault; for the other kinds the sensor is replaced or repaired."""
 FIND = "calibrate the unit to find the sensor, and replace or repair it"
 SIZED = (STEP, RAMP, GAIN, NOISE, DELAY, INTERMITTENT)
 """Kinds whose size says something: a channel that stands still or is exchanged is off by anything."""
@@ -127,5 +127,5 @@ def said_of(faults: tuple[ServiceFault, ...]) -> str:
 
 
 def remedy_in(reason: str) -> str:
-    """What `said_of` says to do; empty of any other reason."""
+    """The remedy in a reason made by `said_of`; empty for any other reason."""
     return reason.parts.get("remedy", "") if isinstance(reason, Message) else ""

@@ -138,7 +138,7 @@ def moved_parameters(
 
 
 def furthest(moved: Sequence[MovedParameter]) -> MovedParameter | None:
-    """The one that moved most, in its own uncertainty; None where nothing did."""
+    """The parameter that moved most, in its own uncertainty; None where none moved."""
     found = max(moved, key=lambda parameter: abs(parameter.change) / parameter.u, default=None)
     return found if found is not None and found.change else None
 

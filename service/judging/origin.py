@@ -1,6 +1,6 @@
 """Step: before a session is judged or stored: a unit's sessions are all measured, or all simulated.
 
-What was simulated says nothing of hardware: it must not move a measured unit's verdict, due date, flags or forecasts.
+Simulated sessions tell nothing of hardware: they must not move a measured unit's verdict, due date, flags or forecasts.
 """
 
 import unicodedata
@@ -76,11 +76,13 @@ GREEK = dict(
     )
 )
 LOOK_ALIKES = str.maketrans({**CYRILLIC, **GREEK, "0": "o", "1": "l", "i": "l", "|": "l"})
-"""What is read for one another, as far as keyboards in use have it (of Unicode TS 39)."""
+"""Characters that are read for one another, as far as keyboards in use have them (from Unicode TS 39)."""
 
 
 def folded(serial: str) -> str:
-    """The same for all serial numbers that are read for one another: without case, encoding, kind of dash or space."""
+    """A form equal for all serial numbers that are read for one another: without case, encoding, kind of dash or
+    space.
+    """
     plain = unicodedata.normalize("NFKC", serial).casefold().translate(LOOK_ALIKES)
     return "".join("-" if unicodedata.category(c) == "Pd" else c for c in plain if not c.isspace())
 
@@ -104,7 +106,7 @@ def is_slip(new: str, known: str, fleet: Collection[str]) -> bool:
 
 
 def _difference(new: str, other: str) -> tuple[str, str, int]:
-    """What lies between the same beginning and the same end of both, and where."""
+    """The parts of both between their common beginning and end, and their place."""
     start = next((i for i, (a, b) in enumerate(zip(new, other, strict=False)) if a != b), min(len(new), len(other)))
     rest = list(zip(new[start:][::-1], other[start:][::-1], strict=False))
     end = next((i for i, (a, b) in enumerate(rest) if a != b), len(rest))
@@ -119,7 +121,7 @@ def _tells_apart(new: str, place: int, fleet: Iterable[str]) -> bool:
 
 
 def _frame(serial: str, place: int) -> str:
-    """What is beside a place, whichever the numbers."""
+    """The serial number around a place, whichever its digits."""
     return "".join("?" if i == place else "9" if c in DIGITS else c for i, c in enumerate(serial))
 
 
@@ -136,7 +138,7 @@ def _leaves_series(new: str, known: str, place: int, fleet: Iterable[str]) -> bo
 
 
 def _around(serial: str, place: int) -> tuple[str, str, str]:
-    """What stands before, in and behind the run of digits at a place."""
+    """The parts before, in and behind the run of digits at a place."""
     start, end = place, place
     while start > 0 and serial[start - 1] in DIGITS:
         start -= 1
@@ -150,8 +152,9 @@ FEWEST = 5
 APART = 5.0
 """Times the uncertainty that units must lie apart for a parameter to tell one from another."""
 CHANCE = 1e-9
-"""That two units of the type lie so close by chance: a unit of a fleet has some thirty neighbours in number, so that
-among a hundred thousand units one is asked for nothing with a chance of 0.3 %."""
+"""Largest chance that two units of the type lie so close: a unit of a fleet has some thirty neighbours in number, so
+that among a hundred thousand units one is asked for nothing with a chance of 0.3 %.
+"""
 MOST = 60
 """Units of a type, those with the newest references, that its spread is taken from."""
 Values = Mapping[tuple[str, str], ParameterValue]
@@ -249,9 +252,9 @@ def _is_chance_small(sensors: Sequence[SensorCalibration], near: Values, rest: S
 FIRST_CLOCK = datetime(1980, 1, 7, tzinfo=UTC)
 """Clocks that lost their time start in 1970, or in 1980 with GPS; there was no session file then."""
 MILLENNIUM, RUNNING = datetime(2000, 1, 1, tzinfo=UTC), timedelta(days=31)
-"""Where the clocks of loggers start that lost their time, and how long such a clock runs before somebody sets it."""
+"""Start of the clocks of loggers that lost their time, and the time that such a clock runs before somebody sets it."""
 LONGEST_LIFE = timedelta(days=3653)
-"""Before a unit's first session: of older ones the records are missing, or the date is wrong."""
+"""Longest time before a unit's first session: of older ones the records are missing, or the date is wrong."""
 LOST = "the clock was wrong; write the date of the measurement into the file"
 
 

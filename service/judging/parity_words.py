@@ -1,4 +1,4 @@
-"""What a recording in service shows: how it agrees with the calibration, and what it never sees."""
+"""A recording in service in words: its agreement with the calibration, and the changes that it cannot show."""
 
 from collections.abc import Iterator
 
@@ -22,7 +22,7 @@ COMMON = (
     "a common change of bias that an acceleration explains, a common turn of all axes, a common change of all scale "
     "factors, or any stretch or shear of the axes"
 )
-"""What the sensors' disagreement cannot show: any motion, and any linear map of it, explains it."""
+"""Changes that the sensors' disagreement cannot show: any motion, and any linear map of it, explains them."""
 ONE_ORIENTATION = (
     "The recording has too little rotation to separate a change of bias from one of scale factor or axis: record slow "
     "turns as well."
@@ -30,13 +30,13 @@ ONE_ORIENTATION = (
 SMALLEST = 1e-4
 """Probability below which its size says no more."""
 SILENT = (STUCK, ZERO, FULL_SCALE)
-"""Of a sensor that says nothing any more; where too few others are left, it still stands in the part after."""
+"""Kinds of fault of a silent sensor; where too few others are left, it still stands in the part after."""
 PER_SENSOR = 4
 """Numbers of a sensor that can change: scale, bias and two turns of its axis."""
 
 
 def agreement_in_words(result: ParityResult) -> FitWords:
-    """How the recording agrees with the calibration, and what to be careful of."""
+    """The agreement of the recording with the calibration, with warnings."""
     chance = "less than 0.01" if result.p_value < SMALLEST else number(100 * result.p_value, 1)
     quiet = TOO_MUCH_MOTION if result.moving else SAME
     return FitWords(
@@ -52,7 +52,7 @@ def agreement_in_words(result: ParityResult) -> FitWords:
 
 
 def parts_in_words(result: ParityResult) -> tuple[str, ...]:
-    """What parity says of the part before a sensor fails, and of the part after; none where none does."""
+    """The results of parity for the part before a sensor fails, and for the part after; none where none fails."""
     if not result.faults:
         return ()
     kept = {sensor.name for sensor in result.after.sensors} if result.after is not None else set()

@@ -1,10 +1,10 @@
-"""Step: before a session is judged or becomes a reference: can it be as its file says?
+"""Step: before a session is judged or becomes a reference: can it be as its file states?
 
-Scale factors, axes, signs, noise and date against the file's own nominal values and the unit's reference, or, before it
-has one, against the other units of its type (`beside_type`); its date against the unit's other sessions
-(`moments`); temperature and gravity are held against what the Earth allows when the file is read. Only what no
-sensor and no stand can do is doubted: a doubt is a slip of writing down, not a fault of the unit, which its tolerances
-judge.
+Scale factors, axes, signs, noise and date are compared with the file's own nominal values and the unit's reference, or,
+before it has one, with the other units of its type (`beside_type`); its date with the unit's other sessions
+(`moments`). Temperature and gravity are compared with the limits of the Earth when the file is read. Only values that
+no sensor and no stand can produce are doubted: a doubt is a mistake in the file, not a fault of the unit, which its
+tolerances judge.
 """
 
 from collections.abc import Collection, Iterator, Sequence
@@ -29,7 +29,9 @@ from service.types.rules import tolerances_of
 from service.types.store import UnitTypes
 
 LEAST_RATIO = 2.0
-"""Of a scale factor to its nominal: makers state it within some percent, and no sensor loses half of it and works."""
+"""Least ratio of a scale factor to its nominal: makers state it within some percent, and no sensor loses half of it and
+works.
+"""
 LIKE = 1.2
 """Ratios within this factor of one another are one slip; nominal values are rounded."""
 THOUSANDS = (1e3, 1e-3, 1e6, 1e-6)
@@ -42,9 +44,9 @@ ROUNDED = np.cos(np.radians(1.0))
 LARGEST_BIAS = {ACCELEROMETER: 2 * STANDARD_GRAVITY, GYROSCOPE: np.radians(100.0)}
 """m/s² (rad/s): ten times what makers allow of the coarsest sensors, 0.2 g and 10 °/s."""
 WITHOUT_OFFSET = frozenset({"m/s²", "m/s^2", "m/s2", "g", "mg", "µg", "rad/s", "°/s", "deg/s", "dps", "°/h", "deg/h"})
-"""Units of readings that stand for what is measured: raw ones may have an offset of half the range."""
+"""Units of readings in physical terms: raw ones may have an offset of half the range."""
 MOST_ROWS = 10_000
-"""Of a recording, spread evenly, whose median size of the specific force is taken."""
+"""Most rows of a recording, spread evenly, for the median size of the specific force."""
 TOO_QUIET = 1e-4
 """χ² a degree of freedom: standard errors that are stated a hundred times larger than the readings scatter."""
 
@@ -137,7 +139,7 @@ def _of_dead(calibration: Calibration) -> Iterator[Doubt]:
 
 
 def _beside_its_type(store: Store, new: Checked, found: Found, calibration: Calibration) -> Iterator[Doubt]:
-    """What no other unit of its type has; nothing where too few are known."""
+    """The doubts about values that no other unit of its type has; none where too few are known."""
     serial = new.session.unit
     kind = UnitTypes(store).of_unit(serial)
     if _is_unnamed(new, kind) and not _is_design(found, kind):
@@ -209,7 +211,7 @@ def _alike(ratios: dict[str, float]) -> Iterator[tuple[str, ...]]:
 
 
 def _slip(ratio: float, sensors: tuple[str, ...], remedy: Remedy) -> tuple[str, FileCorrection | None]:
-    """What makes such a ratio, and what takes it back."""
+    """The probable mistake behind such a ratio, and its correction."""
     for factor in THOUSANDS:
         if factor / LIKE < ratio < factor * LIKE:
             slip = "the readings are not in the unit that the file states, such as mV instead of V"

@@ -1,4 +1,4 @@
-"""A unit's accepted sessions as the derivation sees them, what they tell of flags, and what a unit may be used for."""
+"""A unit's accepted sessions for the derivation, their evidence for flags, and the facts behind its permitted use."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ from service.stands.records import StandCertificate
 Key = tuple[str, str]
 """Matter and place of a flag."""
 Moment = tuple[datetime, str]
-"""When a session was measured, and its id: the order of records."""
+"""Start of a session and its id: the order of records."""
 
 
 @dataclass(frozen=True)
@@ -39,8 +39,9 @@ class Counted:
     revision: int
     is_reference: bool
     basis: str | None
-    """What its verdict rests on; empty where it is to be judged, None where it was judged before this was kept. Heads
-    by `UNWEIGHED` where its diagnosis is still to be weighed beside the verdict."""
+    """Basis of its verdict; empty where it is to be judged, None where it was judged before this was stored. Begins
+    with `UNWEIGHED` where its diagnosis is still to be weighed beside the verdict.
+    """
     temperature: float | None = None
     """°C"""
 
@@ -57,27 +58,27 @@ class Counted:
 
 @dataclass(frozen=True)
 class UnitRecords:
-    """What everything that is derived of a unit rests on."""
+    """Basis of everything derived of a unit."""
 
     counted: tuple[Counted, ...]
-    """In order of time."""
+    """Accepted sessions in order of time."""
     breaks: tuple[datetime, ...]
-    """When the epochs begin, the first one apart, in order."""
+    """Beginnings of the epochs, the first one apart, in order."""
     choices: tuple[str, ...]
     """Sessions that engineers chose for references, the oldest choice first."""
     references: frozenset[str]
-    """Sessions that are said to be what others are judged against, whatever their state."""
+    """Sessions marked as references, whatever their state."""
     diagnosed: Mapping[str, datetime]
     """Sessions with a diagnosis, whatever their state, and when they were measured."""
     waiting: Mapping[str, datetime]
-    """The same of sessions whose diagnosis is asked for."""
+    """Sessions whose diagnosis is asked for, whatever their state, and when they were measured."""
     has_type_laws: bool = False
     """Whether temperature laws of its type are in force."""
 
 
 @dataclass(frozen=True)
 class FlagEvidence:
-    """What one session says for its unit's flags, by its verdict or by its diagnosis."""
+    """Evidence of one session for its unit's flags, by its verdict or by its diagnosis."""
 
     concerns: tuple[Concern, ...]
     clear: tuple[tuple[str, str, str], ...]
@@ -86,37 +87,37 @@ class FlagEvidence:
 
 @dataclass(frozen=True)
 class SessionEvidence:
-    """What an accepted session says for flags."""
+    """Evidence of an accepted session for flags."""
 
     at: Moment
     verdict: FlagEvidence | None
-    """By its verdict; None where that was not kept."""
+    """Evidence of its verdict; None where that was not stored."""
     diagnosis: FlagEvidence | None
-    """By its diagnosis; None where there is none. Of a session that could not decide it clears nothing."""
+    """Evidence of its diagnosis; None where there is none. If the session could not decide, it clears nothing."""
     is_old: bool = False
     """Whether it was judged by a release that did not keep its evidence."""
     unit: str = ""
     """Serial number, where the evidence is of several units."""
     block: str = ""
-    """The same of the kind of block."""
+    """Kind of block, where the evidence is of several units."""
 
 
 @dataclass(frozen=True)
 class Decided:
-    """What was decided of a session under its model revision."""
+    """Decision on a session under its model revision."""
 
     session: str
     revision: int
     judged: Judged
     basis: str
-    """What it rests on."""
+    """Basis of the decision."""
     evidence: FlagEvidence | None
     is_first: bool = False
     """Whether nothing was decided of it under this revision before."""
 
 
 STILL_LOOKING = Reservation(Doubt.PENDING, LOOKING, AGAIN)
-"""Of a verdict whose session is not diagnosed yet."""
+"""Reservation of a verdict whose session is not diagnosed yet."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -124,14 +125,15 @@ class SaidVerdict:
     """A verdict with its reservations."""
 
     reservations: tuple[Reservation, ...]
-    """What speaks against taking the verdict as it stands; one of kind `pending` while causes are still being looked
-    for. Empty where the verdict is plain."""
+    """Reasons against taking the verdict as it stands; one of kind `pending` while causes are still being looked for.
+    Empty where the verdict is plain.
+    """
     said: str
-    """The verdict in words, in one breath with its reservations."""
+    """The verdict in words together with its reservations."""
 
 
 def said(record: StoredSession | Receipt | UnitSummary) -> dict[str, Any]:
-    """The fields of a record with a verdict, and how that is said; a questioned session counts for nothing."""
+    """The fields of a record with its verdict in words; a questioned session counts for nothing."""
     known = record.reservations
     words = verdict_in_words(condition_of(record.verdict, is_reference=record.is_reference), known)
     if not isinstance(record, UnitSummary) and record.state is RecordState.QUESTIONED:
@@ -152,15 +154,15 @@ class OpenFlag:
 
 @dataclass(frozen=True)
 class UseFacts:
-    """Everything that decides what a unit may be used for."""
+    """All facts that decide the permitted use of a unit."""
 
     unit: UnitSummary
     is_calibration: bool = True
     """Whether its latest session calibrates every sensor, so that a reference of it can stand alone."""
     serviced_at: datetime | None = None
-    """Its last service, up to now."""
+    """Time of its last service, up to now, UTC."""
     action: Action | None = None
-    """What its outlook says that it needs next; None without an outlook."""
+    """Next action by its outlook; None without an outlook."""
     flags: tuple[OpenFlag, ...] = ()
     """The gravest first."""
     questioned_at: datetime | None = None
@@ -168,13 +170,13 @@ class UseFacts:
     uncertain: tuple[str, ...] = ()
     """Parameters that a reference leaves uncertain by more than their tolerance."""
     expired: StandCertificate | None = None
-    """Of the stand, where it had expired on the day of measurement."""
+    """Certificate of the stand, where it had expired on the day of measurement."""
     not_diagnosed: str = ""
-    """Why the diagnosis of its latest session failed; empty where it did not."""
+    """Reason why the diagnosis of its latest session failed; empty where it did not."""
     is_waiting: bool = False
     """Whether its latest session is to be judged again."""
     correction: str | None = None
-    """Its latest calibration of every sensor since the last service."""
+    """Id of its latest calibration of every sensor since the last service."""
 
 
 @answer
@@ -183,35 +185,35 @@ class Usable:
     """Whether a unit may be used now, and why."""
 
     usable: bool
-    """In doubt it is false."""
+    """Whether the unit may be used; false in doubt."""
     answer: Use
     """`yes`, `with-reservation`, `no`, or `not-known-yet` while its verdict or dates are being worked out."""
     use: str
-    """The same in words, with what to do."""
+    """The answer in words, with the action."""
     why: str
-    """In one sentence."""
+    """Reason in one sentence."""
     action: str
-    """What to do, as a clause; empty where nothing is to be done."""
+    """Action that is due, as a clause; empty where there is none."""
     reasons: tuple[str, ...]
-    """Everything that speaks against it; empty where it may be used."""
+    """Reasons against the use; empty where it may be used."""
     reservations: tuple[str, ...]
-    """What must be known although it does not forbid the use."""
+    """Facts to know that do not forbid the use."""
     until: datetime | None
     """The next calibration is due then, UTC."""
     verdict: Verdict | None
-    """Of the session that the answer rests on."""
+    """Verdict of the session behind the answer."""
     session: str | None
     """The latest judged one; null where there is none since the last service."""
     correction: str | None
     """Id of the session whose correction firmware applies; null where no session calibrates every sensor."""
     as_of: datetime
-    """When it was asked, UTC."""
+    """Time of the question, UTC."""
     due_reason: Hidden[str] = ""
     """The rule that set the date, or why there is none."""
 
     @property
     def objection(self) -> str:
-        """The gravest thing that speaks against it, or that must be known; empty where there is none."""
+        """The gravest reason against the use, or fact to know; empty where there is none."""
         return next(iter((*self.reasons, *self.reservations)), "")
 
     @property
@@ -227,7 +229,7 @@ class Usable:
     @computed_field  # type: ignore[prop-decorator]  # the one way to describe a property
     @property
     def reservation(self) -> str:
-        """The same as one text; empty where there is none."""
+        """The reservations as one text; empty where there are none."""
         return joined(" ", self.reservations)
 
     @computed_field  # type: ignore[prop-decorator]  # the one way to describe a property

@@ -1,6 +1,6 @@
-"""Step: which session another is judged against: the reference of its block in its epoch.
+"""Step: a session → the one that it is judged against: the reference of its block in its epoch.
 
-An epoch lasts from one known break in the unit's history, a service, to the next; what is measured at the moment of the
+An epoch lasts from one known break in the unit's history, a service, to the next; a session at the moment of the
 service is after it. Its reference is the first session that was kept as one. Calibrations have one reference together,
 alignments and rate tables one each; a recording in service never becomes one and is compared with the calibrations'.
 """
@@ -43,10 +43,10 @@ class KnownUnit:
     read: dict[str, Calibration] = field(default_factory=dict)
     """Calibrations in force that it has read."""
     files: Mapping[str, tuple[str, str]] = field(default_factory=dict)
-    """Of sessions that are not stored yet."""
+    """Files of sessions that are not stored yet: hash and name by id."""
 
     def calibration(self, id: str) -> Calibration:
-        """The one in force of a session."""
+        """The calibration in force of a session."""
         if id in self.made:
             return self.made[id]
         if id not in self.read:
@@ -102,12 +102,12 @@ def known_unit(
 
 @dataclass(frozen=True)
 class EpochReference:
-    """What a session of an epoch is judged against."""
+    """Reference of an epoch."""
 
     session: str | None
-    """Its id; None where the epoch has no reference yet."""
+    """Id of the reference; None where the epoch has none yet."""
     since: datetime | None
-    """Of the service that the epoch began with; None in a unit's first epoch."""
+    """Time of the service with which the epoch began, UTC; None in a unit's first epoch."""
 
 
 def reference_of(store: Store, unit: int, block: str, programme: str, at: datetime) -> EpochReference:
@@ -117,7 +117,9 @@ def reference_of(store: Store, unit: int, block: str, programme: str, at: dateti
 
 
 def covered_at(store: Store, session: StoredSession) -> CoveredTemperatures | None:
-    """By the unit's calibrations up to a session; None where there is no reference, or where its is not known."""
+    """The temperatures covered by the unit's calibrations up to a session; None where there is no reference, or where
+    its temperature is not known.
+    """
     found = Covering(store).up_to(session, alike(session.programme), MOST_EARLIER)
     if found.reference is None:
         return None
@@ -147,7 +149,7 @@ def calibration_to_compare_with(store: Store, recording: Checked) -> Calibration
 
 
 def _uncalibrated(unit: str, since: datetime | None) -> ScheduleError:
-    """That the unit has no calibration, and what to do first."""
+    """The error that the unit has no calibration, with the remedy."""
     service = "" if since is None else say(" since its service of {date}", date=f"{since:%Y-%m-%d}")
     message = say(
         "{unit} has no calibration{service} to compare a recording in service with: upload a calibration session "

@@ -1,8 +1,7 @@
-"""Step: a verdict and what was found about its session → the verdict's reservations.
+"""Step: a verdict and the findings about its session → the verdict's reservations.
 
 The verdict in force is one of several: of the baseline, of the model with the named causes, and of the model with each
-alternative that the readings leave standing. Where they agree, and nothing that was found is large beside a tolerance,
-it is plain.
+alternative that the readings leave standing. Where they agree, and no finding is large beside a tolerance, it is plain.
 """
 
 from collections.abc import Collection, Iterable, Iterator
@@ -57,16 +56,16 @@ from service.types.records import UnitType
 
 @dataclass(frozen=True, eq=False)
 class Covered:
-    """What is known of a unit and temperature."""
+    """Temperatures of a unit and of a session of it."""
 
     lowest: float
     highest: float
     reference: float
     """°C of the session that others are judged against, its mean."""
     now: float
-    """Of the session."""
+    """Temperature of the session, °C."""
     changes: tuple[ChangeRow, ...] = ()
-    """Of earlier sessions, where the session lies outside."""
+    """Changes in earlier sessions, where the session lies outside."""
     references: tuple[ReferenceRow, ...] = ()
 
     @property
@@ -91,7 +90,7 @@ def covered_by(
 
 
 def worth_of(covered: Covered) -> tuple[Size, ...] | None:
-    """What the step in temperature is worth in every parameter, by the earlier sessions; None where they do not tell.
+    """The effect of the step in temperature on every parameter, by the earlier sessions; None where they do not tell.
 
     The law, a line or a parabola, is taken to go on beyond the temperatures that they span.
     """
@@ -119,21 +118,23 @@ def _size(key: TrackKey, tolerance: float, law: Warmth, step: tuple[float, float
 
 
 MOST_ALTERNATIVES = 3
-"""Of the strongest finding, the likeliest ones, that a verdict is taken under: each costs another calibration."""
+"""Most alternatives of the strongest finding, the likeliest ones, under which a verdict is computed: each costs another
+calibration.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class Basis:
-    """What a session is judged against, whatever the model."""
+    """Basis of a session's verdict under any model."""
 
     reference: Calibration
     unit_type: UnitType
     coverage_factor: float
     steps: Steps = field(default_factory=dict)
-    """What the session's temperature is worth."""
+    """Effects of the session's temperature."""
 
     def verdict_of(self, calibration: Calibration) -> Verdict:
-        """By the same rule as an upload."""
+        """The verdict by the same rule as for an upload."""
         return judge(calibration, self.reference, self.unit_type, self.coverage_factor, steps=self.steps).verdict
 
 
@@ -142,9 +143,9 @@ class Otherwise:
     """The verdict under another model than the one in force."""
 
     causes: tuple[str, ...]
-    """That are in that model, identifiers; empty for the baseline."""
+    """Identifiers of the causes in that model; empty for the baseline."""
     sensors: tuple[str, ...]
-    """That its first cause acts on."""
+    """Sensors on which its first cause acts."""
     verdict: Verdict
     named: bool = False
     """Whether it is the model with the causes that the diagnosis names."""
@@ -153,10 +154,11 @@ class Otherwise:
 def verdicts_under_alternatives(
     session: CalibrationSession, findings: tuple[Finding, ...], basis: Basis
 ) -> Iterator[Otherwise]:
-    """Under each of the likeliest alternatives of the strongest finding, in its place beside the other names.
+    """The verdicts under each of the likeliest alternatives of the strongest finding, in its place among the other
+    names.
 
-    None where the record is wrong: the session is to be uploaded again. None of an alignment: it takes off what is
-    looked for in it. None of what only several sessions show together: this one cannot fit it.
+    There are none where the record is wrong: the session is to be uploaded again; none for an alignment: it removes the
+    effects of such causes; and none for a finding from several sessions together: this one cannot fit it.
     """
     findings = tuple(f for f in findings if f.over_sessions is None)
     if (
@@ -176,7 +178,7 @@ def verdicts_under_alternatives(
 
 
 def _of_the_session(first: Finding) -> tuple[str, ...]:
-    """Alternatives that a model of the session can hold: what temperature did between sessions it cannot show."""
+    """Alternatives that a model of the session can hold: it cannot show an effect of temperature between sessions."""
     known = find(first.cause)
     between = known is not None and known.between
     return tuple(name for name in first.alternatives if not (between and name in OF_TEMPERATURE))
@@ -213,15 +215,15 @@ Known = frozenset[tuple[str, str]]
 """Causes that are in the model in force, with the sensor or an empty name."""
 
 UNCHECKED = (Reservation(Doubt.NOT_CHECKED, FAILED, REPORT),)
-"""Of a session that could not be diagnosed."""
+"""Reservations of a session that could not be diagnosed."""
 
 
 @dataclass(frozen=True, eq=False)
 class Doubted:
-    """What was found about a session, beside the verdict that it has."""
+    """Findings about a session, beside its verdict."""
 
     verdict: Verdict | None
-    """In force; None of a reference, or where nothing was judged."""
+    """Verdict in force; None for a reference, or where nothing was judged."""
     findings: tuple[Finding, ...]
     structures: tuple[Structure, ...]
     noise: tuple[NoiseScale, ...]
@@ -230,9 +232,9 @@ class Doubted:
     """Verdicts under the other models that are left standing."""
     known: Known = frozenset()
     temperatures: Covered | None = None
-    """Beside those of its unit; None where nothing says them, or nothing was judged."""
+    """Temperatures besides those of its unit; None where nothing states them, or nothing was judged."""
     worth: tuple[Size, ...] | None = None
-    """What the step in temperature is worth in every parameter; None where that is not known."""
+    """Effect of the step in temperature on every parameter; None where that is not known."""
 
 
 def reservations_of(session: Doubted) -> tuple[Reservation, ...]:
@@ -249,8 +251,9 @@ def reservations_of(session: Doubted) -> tuple[Reservation, ...]:
 
 
 def _of_findings(session: Doubted) -> Iterator[Reservation]:
-    """Record errors always, and causes that are large. What moved since earlier sessions is what the tolerances judge,
-    and what is in the model already, or was set aside before the fit, is taken care of."""
+    """The reservations of record errors always, and of large causes. A change since earlier sessions is judged by the
+    tolerances; a cause that is in the model already, or was set aside before the fit, is accounted for.
+    """
     out = {(ReadingOutlier.identifier, reading.sensor) for reading in session.yardstick.calibration.set_aside}
     for finding in session.findings:
         if all((finding.cause, sensor) in out for sensor in finding.sensors or ("",)):
@@ -264,19 +267,22 @@ def _of_findings(session: Doubted) -> Iterator[Reservation]:
 
 
 def reservations_at(temperatures: Covered | None) -> tuple[Reservation, ...]:
-    """Of a session that no causes are looked for in, such as a recording in service."""
+    """The reservations of a session in which no causes are looked for, such as a recording in service."""
     return tuple(_of_temperature(temperatures, worth_at(temperatures)))
 
 
 def worth_at(temperatures: Covered | None, taken: Collection[tuple[str, str]] = ()) -> tuple[Size, ...] | None:
-    """What a step out of the temperatures that a unit covers is worth in every parameter but those that it was taken
-    off of; None where there is none, or where that is not known."""
+    """The effects of a step out of the temperatures that a unit covers, on every parameter but those that were
+    corrected for it; None where there is no step, or where they are not known.
+    """
     sizes = None if temperatures is None or not temperatures.is_far else worth_of(temperatures)
     return None if sizes is None else tuple(size for size in sizes if (size.sensors[0], size.parameter) not in taken)
 
 
 def _of_temperature(seen: Covered | None, sizes: tuple[Size, ...] | None) -> Iterator[Reservation]:
-    """Where the session lies outside what its unit covers, unless that is known to be worth little."""
+    """The reservation of a session outside the temperatures that its unit covers, unless the effect is known to be
+    small.
+    """
     if seen is None or not seen.is_far or sizes == ():
         return
     worth = None if sizes is None else max(sizes, key=_at_most)
@@ -289,7 +295,7 @@ def _of_temperature(seen: Covered | None, sizes: tuple[Size, ...] | None) -> Ite
 
 
 def _at_most(size: Size) -> float:
-    """Of the tolerance, with U."""
+    """The size as a share of the tolerance, with U."""
     return (size.value + COVERAGE * (size.sigma or 0.0)) / size.tolerance
 
 
@@ -312,7 +318,7 @@ def _of_models(session: Doubted) -> Iterator[Reservation]:
 
 
 def _of_structures(session: Doubted) -> Iterator[Reservation]:
-    """The one that speaks of the record, and else the largest."""
+    """The reservation of a pattern in the record, and else of the largest one."""
     record = [s for s in session.structures if s.of_record]
     if record:
         yield Reservation(Doubt.RECORD, unexplained(record, ""), CORRECT)
@@ -336,7 +342,7 @@ def _of_errors(session: Doubted) -> Iterator[Reservation]:
 
 
 def _of_readings(session: Doubted) -> Iterable[Reservation]:
-    """Nothing is left over to look for causes in."""
+    """The reservation of a session without readings left over to look for causes in."""
     exact = session.yardstick.calibration.fit.is_exact and not session.findings
     return (Reservation(Doubt.NOT_CHECKED, TOO_FEW, ADD),) if exact else ()
 

@@ -1,4 +1,4 @@
-"""What a recording in service would have shown: from what size a change of one sensor is seen."""
+"""Sensitivity of a recording in service: the sizes from which a change of one sensor is detected."""
 
 from dataclasses import dataclass
 
@@ -8,12 +8,12 @@ from service.judging.parity_words import parts_in_words
 from service.kit.measures import in_words
 
 PARAMETERS = ("bias", "scale", "axis")
-"""In the order of the table."""
+"""Parameters in the order of the table."""
 
 
 @dataclass(frozen=True)
 class SightRow:
-    """From what size a change of one sensor would have been seen."""
+    """Sizes from which a change of one sensor would have been detected."""
 
     name: str
     share: str
@@ -23,13 +23,13 @@ class SightRow:
 
 @dataclass(frozen=True)
 class ParityView:
-    """What parity sees of a block."""
+    """Results of parity for a block."""
 
     level: str
     parameters: tuple[str, ...]
     rows: tuple[SightRow, ...]
     parts: tuple[str, ...]
-    """What it says of the parts before and after a sensor fails."""
+    """Results of parity for the parts before and after a sensor fails."""
 
 
 def parity_view(result: ParityResult) -> ParityView:

@@ -1,4 +1,4 @@
-"""What is derived of a unit's accepted sessions, and the records that it rests on."""
+"""Results derived of a unit's accepted sessions, and the records behind them."""
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from datetime import datetime
@@ -108,7 +108,7 @@ class Derivations(Queries):
         return unit_records(self._session, unit)
 
     def computed_at(self, ids: Collection[str]) -> dict[str, datetime]:
-        """When the calibrations in force of some sessions were computed."""
+        """The times at which the calibrations in force of some sessions were computed."""
         if not ids:
             return {}
         in_force = (SessionRow.id == CalibrationRow.session_id) & (SessionRow.revision == CalibrationRow.revision)
@@ -124,7 +124,7 @@ class Derivations(Queries):
         self._session.expire_all()
 
     def put_revisions(self, revisions: Mapping[str, int]) -> None:
-        """Makes sessions speak for their calibrations of a revision; the ones before stay where they are."""
+        """Puts the calibrations of sessions under a revision in force; the earlier ones stay stored."""
         new = [{"session": id, "new_revision": revision, "new_basis": NOT_JUDGED} for id, revision in revisions.items()]
         self._session.execute(_REVISED, new)
         self._session.expire_all()
@@ -143,20 +143,22 @@ class Derivations(Queries):
         return tuple(self._session.scalars(query.distinct().order_by(UnitRow.serial)))
 
     def waiting_of(self, serial: str) -> int:
-        """How many accepted sessions of a unit are to be judged or weighed."""
+        """The number of accepted sessions of a unit that are to be judged or weighed."""
         query = select(func.count()).select_from(SessionRow).join(UnitRow, UnitRow.id == SessionRow.unit_id)
         conditions = (UnitRow.serial == serial, is_waiting(SessionRow.basis), IS_ACCEPTED)
         return self._session.scalar(query.where(*conditions)) or 0
 
     def put_weighed(self, ids: Collection[str]) -> None:
-        """Nothing more is to be done about the verdicts of sessions."""
+        """Marks the verdicts of sessions as weighed beside their diagnoses."""
         conditions = SessionRow.id.in_(tuple(ids)), SessionRow.basis.startswith(UNWEIGHED)
         weighed = func.substr(SessionRow.basis, len(UNWEIGHED) + 1)
         self._session.execute(update(SessionRow).where(*conditions).values(basis=weighed))
         self._session.expire_all()
 
     def put_judged(self, decided: Sequence[Decided]) -> None:
-        """What was decided of sessions under their revisions, in place of what was; the calibrations stay."""
+        """Stores the decisions on sessions under their revisions, in place of the earlier ones; the calibrations
+        stay.
+        """
         if not decided:
             return
         again = [d.session for d in decided if not d.is_first]
@@ -176,14 +178,14 @@ class Derivations(Queries):
         self._session.expire_all()
 
     def evidence(self, unit: int) -> tuple[SessionEvidence, ...]:
-        """Of every accepted session of a unit, in order of time."""
+        """The evidence of every accepted session of a unit, in order of time."""
         return tuple(
             SessionEvidence((at, id), _evidence(verdict), _diagnosis_evidence(diagnosis, is_undecided), basis is None)
             for at, id, verdict, diagnosis, is_undecided, basis in self._session.execute(_EVIDENCE, {"unit": unit})
         )
 
     def evidence_on_stand(self, stand: str) -> tuple[SessionEvidence, ...]:
-        """By the diagnoses of the newest accepted sessions on a stand, oldest first."""
+        """The evidence of the diagnoses of the newest accepted sessions on a stand, oldest first."""
         found = self._session.execute(_EVIDENCE_OF_STAND, {"stand": stand}).all()
         return tuple(
             SessionEvidence((at, id), None, _diagnosis_evidence(diagnosis, is_undecided), unit=unit, block=block)
@@ -191,11 +193,13 @@ class Derivations(Queries):
         )
 
     def settled(self, unit: int, by_service: str) -> dict[Key, Moment]:
-        """The last session that a flag spoke of when a person resolved it, by matter and place."""
+        """The last session of each flag that a person resolved, by matter and place."""
         return self._settled(by_service, FlagRow.unit_id == unit)
 
     def settled_of_stand(self, stand: str, by_service: str) -> Moment | None:
-        """The same of flags that sessions on a stand raised on it."""
+        """The last session of the flags on a stand from diagnoses that persons resolved; None where none was
+        resolved.
+        """
         settled = self._settled(by_service, FlagRow.matter == Matter.STAND, FlagRow.place == stand)
         return settled.get((Matter.STAND, stand))
 
@@ -228,7 +232,7 @@ class Derivations(Queries):
         self._session.execute(update(WorkRow).where(*conditions).values(ticket=uuid4().hex))
 
     def forget_diagnosis(self, id: str) -> tuple[str, ...]:
-        """The same of one session; none where it has none."""
+        """Deletes the diagnosis of one session; returns its id, or none where it has none."""
         gone = delete(DiagnosisRow).where(DiagnosisRow.session_id == id).returning(DiagnosisRow.session_id)
         return tuple(self._session.scalars(gone))
 
@@ -293,14 +297,14 @@ def _motion_rows(decided: Decided) -> Iterator[dict[str, Any]]:
 
 
 def evidence_to_dict(evidence: FlagEvidence) -> dict[str, list[list[Any]]]:
-    """As the store keeps it."""
+    """The evidence as it is stored."""
     concerns = [[c.matter.value, c.place, c.severity, c.summary] for c in evidence.concerns]
     document: dict[str, list[list[Any]]] = STORED.written({"concerns": concerns, "clear": evidence.clear})
     return document
 
 
 def _diagnosis_evidence(document: dict[str, list[list[Any]]] | None, is_undecided: bool) -> FlagEvidence | None:
-    """By a diagnosis: a session too coarse to decide has not seen that something is gone."""
+    """The evidence of a diagnosis: a session too coarse to decide does not show that something is gone."""
     evidence = _evidence(document)
     return evidence if evidence is None or not is_undecided else FlagEvidence(evidence.concerns, ())
 

@@ -1,4 +1,4 @@
-"""What temperature does to a verdict, in words."""
+"""Effect of temperature on a verdict, in words."""
 
 from collections.abc import Iterator, Sequence
 
@@ -40,8 +40,7 @@ def _learned(step: TemperatureCorrection) -> str:
 
 
 def laws_in_words(decisions: tuple[Decision, ...]) -> tuple[str, ...]:
-    """One sentence on what temperature was taken off of in a session, what it was worth most in first; none where it
-    was not."""
+    """One sentence on the corrections for temperature in a session, the largest first; none where there were none."""
     taken = [(decision, step) for decision in decisions if (step := decision.temperature_correction) is not None]
     taken.sort(key=lambda pair: -abs(pair[1].worth) / pair[0].tolerance)
     if not taken:
@@ -91,8 +90,9 @@ def elsewhere(outside: float, now: float, known: tuple[float, float], worth: str
 
 
 def far_from_reference(celsius: float | None, reference: Residuals) -> str:
-    """That a recording was made far from the temperatures of its calibration, and what to do, in a sentence; empty
-    where it was not, or where nothing says it."""
+    """The sentence that a recording was made far from the temperatures of its calibration, with advice; empty where it
+    was not, or where they are not known.
+    """
     known = covered(reference, ())
     if celsius is None or known is None:
         return ""
@@ -119,7 +119,7 @@ def _between(lowest: float, highest: float) -> str:
 MOST_SAID = 4
 """Parameters that a sentence lists."""
 CONSTANT = 0.05
-"""°C: a smaller range is said as one number."""
+"""Least range of temperature, °C: a smaller one is stated as one number."""
 
 
 def span_in_words(celsius: Array | None) -> str:
@@ -128,7 +128,7 @@ def span_in_words(celsius: Array | None) -> str:
 
 
 def covered_in_words(known: CoveredTemperatures | None) -> str:
-    """The same of what a unit's calibrations cover."""
+    """The temperatures that a unit's calibrations cover."""
     return "not known" if known is None else _span(known.lowest, known.highest)
 
 
@@ -139,7 +139,7 @@ def _span(low: float, high: float) -> str:
 
 
 def at_about(celsius: float) -> str:
-    """Where to measure again."""
+    """The advice to measure again at a temperature."""
     return say("measure again at about {celsius}, or calibrate over temperature", celsius=in_degrees(celsius))
 
 

@@ -1,5 +1,5 @@
-"""What a unit may be used for: decided here alone, from everything that is known of it. Pages, labels, exports, the
-calendar, reports and programs all say this answer. In doubt it may not be used.
+"""Permitted use of a unit: decided here alone, from all its facts. Pages, labels, exports, the calendar, reports and
+programs all give this answer. In doubt it may not be used.
 
 It rests on the unit's latest accepted session. The cases are tabled in `docs/api.md`.
 """
@@ -36,12 +36,12 @@ SLACK = timedelta(days=1)
 
 @dataclass(frozen=True)
 class Objection:
-    """One thing that speaks against the use, or that must be known."""
+    """One reason against the use, or fact to know."""
 
     text: str
-    """In a sentence."""
+    """Objection in a sentence."""
     action: str = ""
-    """What to do about it, as a clause."""
+    """Action to take, as a clause."""
     is_pending: bool = False
     """Whether it passes by itself."""
 
@@ -170,7 +170,7 @@ def _flagged(facts: UseFacts, _: datetime) -> Iterator[Objection]:
 
 
 def _undue(facts: UseFacts, now: datetime) -> Iterator[Objection]:
-    """Without a date that is still to come."""
+    """The objection to a unit without a date that is still to come."""
     unit = facts.unit
     if unit.retired_at is not None:
         return
@@ -182,7 +182,7 @@ def _undue(facts: UseFacts, now: datetime) -> Iterator[Objection]:
 
 
 def _without_date(facts: UseFacts) -> Objection:
-    """By what the outlook says that the unit needs instead."""
+    """The objection with the action that the outlook names instead of a date."""
     actions = {Action.NOW: words.ADJUST, Action.REPEAT: words.MEASURE_AGAIN}
     if facts.action in actions and facts.unit.due_reason:
         return Objection(facts.unit.due_reason, actions[facts.action])
@@ -244,8 +244,8 @@ def _noted(facts: UseFacts, _: datetime) -> Iterator[Objection]:
 AGAINST: tuple[Rule, ...] = (
     _retired, _unmeasured, _unfit, _uncertain, _dated_later, _flagged, _gravely_reserved, _undue, _unjudged
 )  # fmt: skip
-"""What forbids the use, the gravest first."""
+"""Rules that forbid the use, the gravest first."""
 RESERVING: tuple[Rule, ...] = (
     _slightly_reserved, _questioned, _untraceable, _unproven, _close, _noted, _undated
 )  # fmt: skip
-"""What does not, the gravest first."""
+"""Rules that make reservations, the gravest first."""

@@ -1,4 +1,4 @@
-"""What units may be used for, by their serial numbers."""
+"""Permitted use of units, by their serial numbers."""
 
 from collections.abc import Collection, Sequence
 from datetime import datetime
@@ -22,7 +22,7 @@ AT_ONCE = 100
 
 
 def usable_of(store: Store, units: Sequence[UnitSummary], now: datetime) -> dict[str, Usable]:
-    """Of units, by serial number."""
+    """The permitted use of units, by serial number."""
     found: dict[str, Usable] = {}
     for start in range(0, max(len(units), 1), AT_A_TIME):
         facts = UseStore(store).facts(units[start : start + AT_A_TIME], now)
@@ -31,7 +31,7 @@ def usable_of(store: Store, units: Sequence[UnitSummary], now: datetime) -> dict
 
 
 def settle_uses(store: Store, units: Collection[int]) -> None:
-    """Stores what units may be used for; where no flag says that a unit is overdue, until it is due."""
+    """Stores the permitted use of units up to their due date, or, where a flag marks a unit as overdue, after it."""
     found, known = UseStore(store), Fleet(store).by_keys(units)
     facts = found.facts([summary for summary, _ in known.values()], END_OF_TIME)
     found.put(
@@ -48,7 +48,9 @@ def _moment(known: UseFacts) -> datetime:
 
 
 def settle_all(storage: Storage) -> None:
-    """Stores it of every unit, a few in each transaction: after an upgrade, and against anything forgotten."""
+    """Stores the permitted use of every unit, a few in each transaction: after an upgrade, and against anything
+    forgotten.
+    """
     after: int | None = 0
     while after is not None:
         with storage.database.writing() as store:
@@ -56,6 +58,6 @@ def settle_all(storage: Storage) -> None:
 
 
 def usable_unit(store: Store, serial: str, now: datetime) -> Usable:
-    """Of one; NotFoundError when there is none of that serial number."""
+    """The permitted use of one unit; NotFoundError where there is none of that serial number."""
     unit = Fleet(store).get(serial)
     return usable_of(store, (unit,), now)[serial]

@@ -1,4 +1,4 @@
-"""Everything that decides what units may be used for, in one query for however many units."""
+"""All facts that decide the permitted use of units, in one query for however many units."""
 
 from collections.abc import Mapping, Sequence
 from datetime import datetime
@@ -39,14 +39,14 @@ Other = aliased(SessionRow)
 """A session of the unit, beside its latest one."""
 MATTERS = tuple(Matter)
 Renewed = aliased(StandCertificateRow)
-"""The same certificate as it was recorded again."""
+"""A later record of the same certificate."""
 
 
 class UseStore(Queries):
-    """What is known of units beside their summaries."""
+    """Facts of units besides their summaries."""
 
     def facts(self, units: Sequence[UnitSummary], now: datetime) -> tuple[UseFacts, ...]:
-        """Of units, in their order."""
+        """The facts of units, in their order."""
         query = _facts(now).where(UnitRow.serial.in_([unit.serial for unit in units]))
         rows: dict[str, list[Sequence[Any]]] = {}
         for row in self._session.execute(query):
@@ -62,7 +62,7 @@ class UseStore(Queries):
         return found[-1] if found else None
 
     def put(self, uses: Mapping[int, tuple[Usable, bool]]) -> None:
-        """Rewrites what units may be used for, by their keys, and whether the fleet lists them."""
+        """Rewrites the permitted use of units, by their keys, and whether the fleet lists them."""
         rows = [
             {"unit_id": unit, "answer": use.answer, "rank": RANKS[use.answer], "is_listed": listed, "use": str(use.use)}
             for unit, (use, listed) in uses.items()
@@ -118,7 +118,7 @@ def _correction(serviced: ScalarSelect[datetime]) -> ScalarSelect[str]:
 
 
 def _questioned() -> ScalarSelect[datetime]:
-    """When the latest session after the one that counts was measured that waits for an engineer."""
+    """The start of the latest session that waits for an engineer, of those after the one that counts."""
     later = or_(SessionRow.started_at.is_(None), Other.started_at > SessionRow.started_at)
     conditions = (Other.unit_id == UnitRow.id, Other.state == RecordState.QUESTIONED, later)
     return select(func.max(Other.started_at)).where(*conditions).correlate(UnitRow, SessionRow).scalar_subquery()
@@ -157,6 +157,6 @@ def _flag(row: FlagRow) -> OpenFlag:
 
 
 def _uncertain(document: bytes, unit_type: UnitTypeRow, tolerances: ToleranceRow) -> tuple[str, ...]:
-    """What a reference determines too poorly to be used by itself."""
+    """The parameters that a reference determines too poorly to be used by itself."""
     allowed = tolerances_of(unit_type_of(unit_type, tolerances))
     return tuple(left_uncertain(calibration_of(document), allowed, COVERAGE))

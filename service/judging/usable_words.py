@@ -1,4 +1,4 @@
-"""What a unit may be used for, why, and what to do about it, in words."""
+"""Permitted use of a unit, its reasons and the action to take, in words."""
 
 from datetime import datetime
 
@@ -63,7 +63,7 @@ def on(sentence: str, at: datetime, **more: str) -> str:
 
 
 def next_in_words(use: Usable) -> str:
-    """What the unit needs next: ``Next calibration: 4 Nov 2027``, or what must be done first."""
+    """The next step for the unit: ``Next calibration: 4 Nov 2027``, or the action to take first."""
     if use.due is None:
         return capitalised(use.action)
     if use.is_overdue:

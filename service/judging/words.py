@@ -1,4 +1,4 @@
-"""Why a verdict is what it is, and with which reservations, in words."""
+"""Reasons and reservations of a verdict, in words."""
 
 from collections.abc import Sequence
 
@@ -37,19 +37,19 @@ RESTATE = "state the true standard errors and upload the file again"
 ADD = "add positions"
 REPORT = "see its diagnosis"
 ADVICE = {"record": CORRECT, "stand": STAND, "fixture": FIXTURE}
-"""By what a cause is of; of a sensor, a session is repeated first."""
+"""Advice by the scope of a cause; for a sensor, a session is repeated first."""
 TOO_FEW = "causes were not checked because of too few positions"
 AGAIN = "ask again in a few seconds"
 FAILED = "causes were not checked"
 
 
 def advice_on_structure(structure: Structure) -> str:
-    """What to do about what no known cause explains: what all sensors show is none of theirs."""
+    """The advice on a structure that no known cause explains: one common to all sensors belongs to none of them."""
     return REPEAT if structure.sensors else STAND
 
 
 def advice_on(cause: str) -> str:
-    """What to do about a named cause, in a clause."""
+    """The advice on a named cause, in a clause."""
     known = find(cause)
     return REPEAT if known is None else ADVICE.get(known.scope, REPEAT)
 
@@ -115,17 +115,17 @@ ALL_PASS = "Every parameter is within its tolerance by more than U; closest to i
 
 
 def verdict_in_words(condition: Condition, reservations: Reservations) -> str:
-    """A verdict as it is said wherever it stands: ``Fit, but the bias of A2 has one step: repeat the session``."""
+    """A verdict with its reservations: ``Fit, but the bias of A2 has one step: repeat the session``."""
     return say("{word}{but}", word=condition.word, but=but(reservations)) if reservations != () else condition.word
 
 
 def unit_in_words(unit: UnitSummary) -> str:
-    """The verdict of a unit's latest session, as it is said."""
+    """The verdict of a unit's latest session in words."""
     return verdict_in_words(condition_of(unit.verdict, is_reference=unit.is_reference), unit.reservations)
 
 
 def first_in_words(calibration: Calibration, opening: Opening) -> str:
-    """That a session is the reference, and what of the unit it leaves open."""
+    """The sentence that a session is the reference, with the parameters that it leaves open."""
     return joined(" ", filter(None, (OPENINGS[opening], left_open(calibration))))
 
 
@@ -140,8 +140,9 @@ def reason(decisions: tuple[Decision, ...], blind: str = "") -> str:
 
 
 def _by_law(worst: Decision, decisions: tuple[Decision, ...]) -> str:
-    """What temperature was worth, of the worst parameter, or of the one that it was worth most in; empty where nothing
-    was taken off."""
+    """The effect of temperature on the worst parameter, or else on the one most affected; empty where nothing was
+    corrected.
+    """
     taken = [(decision, step) for decision in decisions if (step := decision.temperature_correction) is not None]
     most = max(taken, key=lambda pair: (pair[0] is worst, abs(pair[1].worth) / pair[0].tolerance), default=None)
     return "" if most is None else law_in_words(*most)
@@ -227,13 +228,13 @@ MOSTLY_MOTION = 0.5
 MOST_CANDIDATES = 6
 """Sensors that a sentence lists: a block of the common kind has no more."""
 LEAST_SHARE = 1e-3
-"""Of the samples, below which the share itself says no more."""
+"""Share of the samples below which the share itself adds nothing."""
 
 
 def recording_in_words(
     result: ParityResult, decisions: tuple[Decision, ...], faults: tuple[ServiceFault, ...] = ()
 ) -> str:
-    """What was found, and what could not have been."""
+    """The result of a recording in service, and the parameters that it could not judge."""
     if faults:
         return said_of(faults)
     found = found_in_words(result)
@@ -255,7 +256,7 @@ def recording_in_words(
 
 
 def found_in_words(result: ParityResult) -> str:
-    """What was found, faults apart, without its full stop."""
+    """The result apart from faults, without its full stop."""
     if result.moving:
         return say(
             "{too_much_motion}: the sensors disagree, possibly because of lever arms, delays between channels or "
@@ -289,7 +290,7 @@ def found_in_words(result: ParityResult) -> str:
 
 
 def stillness(result: ParityResult) -> str:
-    """What to do so that motion does not hide a change."""
+    """The advice by which motion does not hide a change."""
     seconds = REST * (result.block_seconds or 1.0)
     return say(
         "hold the unit still for {seconds} s while recording, or state where its sensors are (position_m) and record "
@@ -299,7 +300,7 @@ def stillness(result: ParityResult) -> str:
 
 
 def clipped_in_words(result: ParityResult, sensor: str) -> str:
-    """How often a channel stood at the end of its range; empty for one that did not."""
+    """The share of samples at which a channel stood at the end of its range; empty for one that did not."""
     share = result.clipped.get(sensor)
     return (
         ""

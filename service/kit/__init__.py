@@ -1,1 +1,1 @@
-"""What every subject uses: measures, moments, names, charts' look, lists."""
+"""Tools for every subject: measures, moments, names, charts' look, lists."""

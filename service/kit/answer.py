@@ -1,4 +1,4 @@
-"""Records that the API answers with as they are: what stands under a field describes it in OpenAPI."""
+"""Records that the API returns as they are; the string under a field is its description in OpenAPI."""
 
 import ast
 from dataclasses import is_dataclass
@@ -13,7 +13,7 @@ from estimator.json_object import Json
 
 T = TypeVar("T")
 Hidden = Annotated[T, Field(exclude=True)]
-"""Of a field that no answer holds."""
+"""Type of a field that no answer holds."""
 
 
 def answer(record: type[T]) -> type[T]:

@@ -1,4 +1,4 @@
-"""A file as it comes in, before anything is known of what it holds."""
+"""A file as it comes in, before anything is known of its contents."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,11 +20,11 @@ class Landed:
 
 
 Content = bytes | Landed
-"""Of an upload: bytes where they are few."""
+"""Contents of an upload: bytes where they are few."""
 
 
 def where(content: Content) -> bytes | Path:
-    """What reads it is given: the bytes, or where they lie."""
+    """The input for a reader: the bytes, or the path of the file with them."""
     return content.path if isinstance(content, Landed) else content
 
 

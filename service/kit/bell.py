@@ -1,11 +1,11 @@
-"""Wakes those who make diagnoses when there are new ones to be made, and those who wait for one when it is there."""
+"""Wakes the makers of diagnoses when new ones are to be made, and those who wait for a diagnosis when it is there."""
 
 from collections import deque
 from threading import Condition
 
 
 class Bell:
-    """Of one process; what other processes do is found by looking now and then."""
+    """Signal between the threads of one process; the work of other processes is found by polling."""
 
     def __init__(self) -> None:
         self._condition, self._rung = Condition(), 0
@@ -13,7 +13,7 @@ class Bell:
 
     @property
     def rung(self) -> int:
-        """How often it rang so far: taken before one looks, so that nothing is missed between look and wait."""
+        """Number of rings so far: read it before looking for work, so that nothing is missed between look and wait."""
         return self._rung
 
     def ring(self) -> None:
@@ -23,12 +23,12 @@ class Bell:
             self._condition.notify_all()
 
     def wait(self, rung: int, seconds: float) -> None:
-        """Until it rang once more, or the time is over."""
+        """Waits until it rang once more, or the time is over."""
         with self._condition:
             self._condition.wait_for(lambda: self._rung != rung, seconds)
 
     def hurry(self, session: str) -> None:
-        """Somebody waits for the diagnosis of a session: it comes before the others."""
+        """Puts a session before the others because somebody waits for its diagnosis."""
         if session not in self._urgent:
             self._urgent.append(session)
             self.ring()

@@ -7,33 +7,33 @@ from estimator.message import say, without_stop
 from service.kit.answer import answer
 
 AT_FAULT = "the program failed at it: see the log"
-"""In place of Python's words."""
+"""Reason in place of Python's words."""
 
 
 def too_long(seconds: float) -> str:
-    """Of what was ended because it was not done in time."""
+    """The reason for a piece of work that was ended at its limit of time."""
     return say("it was not finished within the limit of {seconds} s", seconds=f"{seconds:g}")
 
 
 class FailedKind(StrEnum):
-    """What is done in the background."""
+    """Kinds of background work."""
 
     DIAGNOSIS = "diagnosis"
-    """Of a session."""
+    """Diagnosis of a session."""
     OUTLOOK = "outlook"
-    """Of a unit: its drift, its forecast and its due date."""
+    """Outlook of a unit: its drift, its forecast and its due date."""
     DERIVATION = "derivation"
-    """Of a unit: verdicts after a change of its records."""
+    """Verdicts of a unit after a change of its records."""
     GROUP = "group"
-    """What the sessions of a unit, a unit type or a stand show together."""
+    """Joint diagnosis of the sessions of a unit, a unit type or a stand."""
     SUMMARY = "summary"
-    """How the units of a type drift, or how stands stand."""
+    """Drift of the units of a type, or health of the stands."""
     RECOMPUTATION = "recomputation"
-    """Of a unit's sessions under another model."""
+    """Recomputation of a unit's sessions under another model."""
     JOB = "job"
     """Long work that somebody asked for."""
     MESSAGE = "message"
-    """To another program."""
+    """Message to another program."""
 
 
 @answer
@@ -42,11 +42,11 @@ class Failed:
     """One piece of background work that has failed."""
 
     kind: FailedKind
-    """What is done."""
+    """Kind of the work."""
     of: str
     """Session, unit, group, job or address."""
     why: str
-    """Why it failed, in short; the log says more."""
+    """Reason for the failure, in short; the log says more."""
 
 
 UNIT = (
@@ -71,20 +71,20 @@ NAMES = {
 
 
 def with_last_try(text: str, why: str) -> str:
-    """What was given up, and how its last try ended where that is known."""
+    """The failed work, and the end of its last attempt where that is known."""
     return say("{failure} The last try: {reason}.", failure=text, reason=without_stop(why)) if why else text
 
 
 def unit_failed(reason: str) -> str:
-    """Of a unit."""
+    """The sentence for a unit."""
     return say(UNIT, why=without_stop(reason))
 
 
 def session_failed(reason: str) -> str:
-    """Of a session."""
+    """The sentence for a session."""
     return say(SESSION, why=without_stop(reason))
 
 
 def group_failed(reason: str) -> str:
-    """Of a unit, a unit type or a stand."""
+    """The sentence for a unit, a unit type or a stand."""
     return say(GROUP, why=without_stop(reason))

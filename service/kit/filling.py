@@ -11,15 +11,15 @@ class StoppedError(Exception):
 
 
 class Filling:
-    """How far it is. Its one thread writes, the pages read."""
+    """Progress of the storing. Its one thread writes, the pages read."""
 
     def __init__(self, store: Callable[[Callable[[], None]], None], total: int) -> None:
-        """``store`` stores ``total`` sessions and calls what it is given after each."""
+        """Takes ``store``, which stores ``total`` sessions and calls its argument after each."""
         self._store, self._total = store, total
         self._done, self._is_over = 0, False
 
     def run(self, stop: Event) -> None:
-        """Until all are stored, or the service stops."""
+        """Stores sessions until all are stored, or the service stops."""
 
         def advance() -> None:
             self._done += 1
@@ -35,7 +35,7 @@ class Filling:
 
     @property
     def in_words(self) -> str:
-        """How far it is; empty at its end."""
+        """Progress in words; empty at its end."""
         if self._is_over:
             return ""
         return say(

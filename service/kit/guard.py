@@ -1,8 +1,8 @@
-"""The boundary of work in the background: what fails is logged, counted and tried again later, and the rest goes on.
+"""The boundary of work in the background: failures are logged, counted and tried again later, and the rest goes on.
 
-What an upload or a store can do is foreseen, and said in words where it happens. Everything else is a fault of the
-program, and only here is it caught: logged with its traceback and with what it was at, so that whoever gave the work
-can count it and keep that it failed.
+Failures of an upload or a store are foreseen, and described where they happen. Everything else is a fault of the
+program, and only here is it caught: logged with its traceback and its place, so that the caller can count it and keep
+the failure.
 """
 
 from collections.abc import Callable, Iterator
@@ -19,21 +19,21 @@ FORESEEN = (ServiceError, SessionError)
 """A store that is away or full, a file that cannot be read: logged in one line. What else a database refuses is a fault
 of the program."""
 Alone = Callable[[str, str], AbstractContextManager[None]]
-"""How one piece of work is done: what is done, and on which stand or unit."""
+"""Context of one piece of work, from its kind and its stand or unit."""
 
 
 @dataclass(frozen=True)
 class Failure:
-    """Why a piece of work is not done."""
+    """Reason why a piece of work is not done."""
 
     fault: str
     reason: str
     is_foreseen: bool = True
-    """False where the program failed or its process died: that is tried again some times only."""
+    """False where the program failed or its process died: that is tried again only a few times."""
 
 
 class Met:
-    """What became of a piece of work."""
+    """Outcome of a piece of work."""
 
     failure: Failure | None = None
 
@@ -93,7 +93,7 @@ class Guard:
 
     @contextmanager
     def at_request(self, doing: str, place: str) -> Iterator[None]:
-        """A piece of work for somebody who waits for it, and is shown what is foreseen."""
+        """Runs a piece of work for a requester who waits for it, and is shown foreseen failures."""
         with unforeseen(doing, place) as met:
             yield
         if met.failure is not None:

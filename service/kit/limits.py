@@ -1,4 +1,4 @@
-"""What requests, files and work may hold and cost, so that a small file cannot become a big one in memory.
+"""Limits of requests, files and work, so that a small file cannot become a big one in memory.
 
 Like the limits that an operating system sets a process, these are one set a process: `create_app` takes them from the
 settings, every other program from the environment. They go together (more cells need more memory and more time), so an
@@ -17,16 +17,16 @@ KIBIBYTE, MEBIBYTE, GIBIBYTE = 1024, 1024**2, 1024**3
 
 @dataclass(frozen=True)
 class Limits:
-    """Of one machine; the values are those of a small one."""
+    """Limits of one machine; the defaults are those of a small one."""
 
     rows: int = 2_000_000
-    """Of an uploaded table."""
+    """Rows of an uploaded table."""
     columns: int = 10_000
-    """Of a table; an array of a thousand triads has a third."""
+    """Columns of a table; an array of a thousand triads has a third."""
     cells: int = 2_000_000
     """Rows × columns of a table: about 60 bytes of `memory` each."""
     log_cells: int = 500_000_000
-    """The same of a raw log that is averaged while it is scanned: an hour of six sensors at 20 kHz."""
+    """Rows × columns of a raw log that is averaged while it is scanned: an hour of six sensors at 20 kHz."""
     whole: int = 64 * MEBIBYTE
     """Bytes of an upload that is read whole: as many cells as JSON."""
     log: int = 2 * GIBIBYTE
@@ -42,7 +42,7 @@ class Limits:
     unpacked: int = 128 * MEBIBYTE
     """Bytes, of an archive's or a file's compressed parts."""
     seconds: int = 20
-    """Of computing; on a busy machine reading may take `WAITING` times as long."""
+    """Seconds of computing; on a busy machine reading may take `WAITING` times as long."""
     memory: int = 224 * MEBIBYTE
     """Bytes, of the process that reads the file: what the cells take, and the reader itself."""
     at_once: int = 2
@@ -52,12 +52,12 @@ class Limits:
     work: float = 600.0
     """Seconds that one piece of work in the background may take; the largest diagnosis takes tens of them."""
     free: int = 256 * MEBIBYTE
-    """Bytes that the disk of uploaded files keeps: a database on it needs room to close what is open."""
+    """Bytes that the disk of uploaded files keeps free: a database on it needs room to finish open transactions."""
 
     client: float = 10.0
     """Seconds that a client is waited for, beside what a slow line needs for its bytes."""
     connections: int = 500
-    """That may be open at once; each costs some 100 kB."""
+    """Connections open at once; each costs some 100 kB."""
 
     @property
     def extent(self) -> Extent:
@@ -66,13 +66,13 @@ class Limits:
 
 
 SMALL = Limits()
-"""For 2 GB of memory: two readers, the service and a diagnosis fit."""
+"""Limits for 2 GB of memory: two readers, the service and a diagnosis fit."""
 TIMES = 4
-"""What a large machine allows beside a small one."""
+"""Ratio of the limits of a large machine to those of a small one."""
 SCALED = ("rows", "cells", "log_cells", "whole", "log", "attached", "unpacked", "seconds", "memory", "work")
-"""What grows with the machine: the size of one file, and the time and memory that it takes."""
+"""Limits that grow with the machine: the size of one file, and the time and memory that it takes."""
 LARGE = replace(SMALL, **{name: TIMES * getattr(SMALL, name) for name in SCALED})
-"""For 8 GB of memory."""
+"""Limits for 8 GB of memory."""
 
 
 class _InForce:
@@ -80,7 +80,7 @@ class _InForce:
 
 
 def limits_of(settings: Settings) -> Limits:
-    """Of the machine that the settings name."""
+    """The limits of the machine in the settings."""
     return LARGE if settings.machine == "large" else SMALL
 
 

@@ -1,12 +1,12 @@
-"""The order in which a thread takes locks, and that it computes nothing while it writes.
+"""The order in which a thread takes locks, and a check that it computes nothing while it writes.
 
-First a place to read a large file, then the turn to write, then rows: a unit's before those of what belongs to it.
-While a write transaction is open nothing is read from files, calibrated, judged, weighed, diagnosed or forecast: on
-SQLite everybody else's writing waits for its end, on PostgreSQL everybody's who writes to the same unit. What is to be
-stored is worked out before, and put down where it still holds, or is left to be worked out after.
+First a place to read a large file, then the turn to write, then rows: a unit's before those that belong to it. While a
+write transaction is open nothing is read from files, calibrated, judged, weighed, diagnosed or forecast: on SQLite it
+would block every other writer, on PostgreSQL every other writer to the same unit. Results are computed before and
+stored where they still hold, or are left to be computed after.
 
-Tests hold it by the environment variable `IMU_WATCH_WRITING`. A service that somebody relies on is slow rather
-than broken.
+Tests hold it by the environment variable `IMU_WATCH_WRITING`. In production a slow service is preferred to a broken
+one.
 """
 
 import os
@@ -30,7 +30,7 @@ class ComputedWhileWritingError(Exception):
 
 @contextmanager
 def writing() -> Iterator[None]:
-    """This thread's transaction is open until the block ends."""
+    """Marks this thread's transaction as open until the block ends."""
     _own.is_writing = True
     try:
         yield
@@ -39,7 +39,7 @@ def writing() -> Iterator[None]:
 
 
 def outside_writing(function: Callable[Given, Result]) -> Callable[Given, Result]:
-    """Of a function that takes long: nobody calls it in a write transaction."""
+    """Marks a function that takes long and must not be called in a write transaction."""
 
     @wraps(function)
     def watched(*args: Given.args, **kwargs: Given.kwargs) -> Result:

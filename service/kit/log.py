@@ -15,7 +15,7 @@ from structlog.typing import Processor
 REQUEST_ID = "X-Request-Id"
 """The header under which a request is known, here and in the logs of those who sent it."""
 NAME = "imu_health"
-"""Of the service's logger among those of its libraries."""
+"""Name of the service's logger among those of its libraries."""
 FIELDS: tuple[Processor, ...] = (
     structlog.contextvars.merge_contextvars,
     structlog.stdlib.add_log_level,
@@ -23,7 +23,7 @@ FIELDS: tuple[Processor, ...] = (
     structlog.processors.TimeStamper(fmt="iso", utc=True),
     structlog.processors.format_exc_info,
 )
-"""What every line gets beside its own fields."""
+"""Processors for the fields of every line besides its own."""
 
 log: BoundLogger = structlog.wrap_logger(
     logging.getLogger(NAME),

@@ -36,9 +36,9 @@ class Measure:
 
 
 PPM = Measure("ppm", 1e6)
-"""Of what is relative."""
+"""Measure of relative quantities."""
 ARCSEC = Measure("arcsec", 3600 / DEGREE)
-"""Of small angles, rad."""
+"""Measure of small angles, rad."""
 
 READABLE = 1e4
 """A number from which on a coarser measure is easier to read."""
@@ -64,7 +64,7 @@ COARSE_MEASURES = {
     ("gyroscope", "axis"): Measure("°", 1 / DEGREE),
     ("gyroscope", "misalignment"): Measure("°", 1 / DEGREE),
 }
-"""What to change to when the numbers of the fine measure would pass 9,999."""
+"""Measures in place of the fine ones when their numbers would pass 9,999."""
 NOISE = {
     ("accelerometer", "quantisation"): Measure("mm/s", 1e3),
     ("accelerometer", "white-noise"): Measure("µg/√Hz", 1e6 / STANDARD_GRAVITY),
@@ -75,15 +75,15 @@ NOISE = {
     ("gyroscope", "bias-instability"): Measure("°/h", 3600 / DEGREE),
     ("gyroscope", "random-walk"): Measure("°/h/√h", 3600 * 60 / DEGREE),
 }
-"""Of the terms of noise at rest, as data sheets give them."""
+"""Measures of the terms of noise at rest, as in data sheets."""
 PER_G = Measure(say("per g"), STANDARD_GRAVITY)
-"""Of scale factors."""
+"""Unit of the scale factors of accelerometers."""
 PER_RATE = Measure(say("per °/s"), DEGREE)
-"""Of the scale factors of gyros."""
+"""Unit of the scale factors of gyros."""
 
 
 def leading_kind(kinds: Collection[str]) -> str:
-    """Whose measures speak for a whole block: the accelerometers' where it holds any."""
+    """The kind whose measures represent a whole block: accelerometers where it holds any."""
     return ACCELEROMETER if ACCELEROMETER in kinds else GYROSCOPE
 
 
@@ -106,7 +106,7 @@ def value_measure(kind: str, parameter: str, largest: float) -> Measure:
 
 
 def scale_measure(kind: str) -> Measure:
-    """What scale factors are counted per."""
+    """The unit per which scale factors are counted."""
     return PER_RATE if kind == GYROSCOPE else PER_G
 
 
@@ -133,7 +133,7 @@ def number(value: float | None, digits: int | None = None) -> str:
 
 
 def signed(value: float | None, expanded: float | None, measure: Measure) -> str:
-    """The same for a change: with a plus where it is not negative."""
+    """A change for reading, with a plus where it is not negative."""
     text = measured(value, expanded, measure)
     return text if value is None or text.startswith(MINUS) else "+" + text
 
@@ -214,9 +214,9 @@ PARAMETER_NAMES = {
     "misalignment": "misalignment",
     SEVERAL: "bias, scale factor and axis together",
 }
-"""What each parameter is called in sentences."""
+"""Names of the parameters in sentences."""
 FULLER = {"misalignment": "misalignment to the turn axis"}
-"""Where a heading, which stands alone, must say more than a sentence."""
+"""Fuller names for a heading, which stands alone."""
 
 
 def heading(parameter: str) -> str:

@@ -1,5 +1,5 @@
-"""Figures for Prometheus: requests by operation and status with their time, uploads by what became of them,
-work beside the requests that failed.
+"""Figures for Prometheus: requests by operation and status with their time, uploads by outcome, and failed background
+work.
 """
 
 from collections.abc import Mapping
@@ -58,16 +58,16 @@ class Metrics:
         )
 
     def note_failed(self, counts: Mapping[FailedKind, int]) -> None:
-        """How much work of each kind is failed now."""
+        """Sets the amounts of failed work, by kind."""
         for kind, number in counts.items():
             self._failed.labels(kind.value).set(number)
 
     def note_room(self, free: int) -> None:
-        """How much room is left for uploads, bytes."""
+        """Sets the free room for uploads, bytes."""
         self._room.set(free)
 
     def note_pending(self, count: int) -> None:
-        """How many diagnoses are still to be made."""
+        """Sets the number of diagnoses still to be made."""
         self._pending.set(count)
 
     def count_upload(self, outcome: str) -> None:

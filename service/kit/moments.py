@@ -5,7 +5,7 @@ from datetime import UTC, datetime, timedelta, timezone
 EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 MILLISECOND = timedelta(milliseconds=1)
 EARLIEST, LATEST = datetime(1900, 1, 1, tzinfo=UTC), datetime(2200, 1, 1, tzinfo=UTC)
-"""Between which everything is kept."""
+"""Bounds of all stored times."""
 
 
 def epoch_ms(moment: datetime) -> int:
@@ -14,23 +14,23 @@ def epoch_ms(moment: datetime) -> int:
 
 
 def aware(moment: datetime) -> datetime:
-    """Without an offset it is UTC."""
+    """The moment with an offset: UTC where it has none."""
     return moment if moment.tzinfo else moment.replace(tzinfo=UTC)
 
 
 def offset_minutes(at: datetime) -> int | None:
-    """Of the place where it was, from UTC; None where it is UTC, or where nobody said."""
+    """The moment's offset from UTC, minutes; None where it is UTC or unknown."""
     offset = at.utcoffset()
     return (offset // timedelta(minutes=1) or None) if offset else None
 
 
 def local(at: datetime, offset: int | None) -> datetime:
-    """The same moment by the clock of the place: a day in Auckland is the one that its files and papers state."""
+    """The moment by the clock of the place: a day in Auckland is the one that its files and papers state."""
     return at if offset is None else at.astimezone(timezone(timedelta(minutes=offset)))
 
 
 def in_utc(moment: datetime) -> datetime:
-    """The same moment in UTC; ValueError of one that is not kept."""
+    """The moment in UTC; ValueError outside the years that are kept."""
     known = aware(moment)
     if not EARLIEST <= known < LATEST:
         raise ValueError("must lie between 1900 and 2200")

@@ -1,4 +1,4 @@
-"""Who asks: people with an account, programs with a token, and what each may do."""
+"""The sender of a request: people with an account, programs with a token, and their roles."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -9,7 +9,7 @@ from service.kit.answer import Hidden, answer
 
 
 class Role(StrEnum):
-    """What somebody may do; each may all that the ones before it may."""
+    """Rights of a person or program; each role includes the ones before it."""
 
     VIEWER = "viewer"
     """Reads."""
@@ -26,7 +26,7 @@ class Role(StrEnum):
 
 
 RANKS = {role: rank for rank, role in enumerate(Role)}
-"""How far each role reaches."""
+"""Rank of each role; a role includes all of lower rank."""
 
 
 @answer
@@ -36,15 +36,15 @@ class Account:
 
     id: Hidden[int]
     login: str
-    """What the person signs in with."""
+    """Name with which the person signs in."""
     name: str
-    """As papers, flags and the audit trail name the person."""
+    """Name of the person on papers, flags and the audit trail."""
     role: Role
-    """What the person may do."""
+    """Role of the person."""
     is_active: bool
     """Whether the person may sign in."""
     created_at: datetime
-    """When, UTC."""
+    """Time of creation, UTC."""
     has_password: bool
     """Whether a password was chosen already."""
 
@@ -52,42 +52,42 @@ class Account:
 @answer
 @dataclass(frozen=True)
 class Token:
-    """What a program shows instead of a password."""
+    """Token that a program shows instead of a password."""
 
     id: int
     """Number of the token."""
     login: str
     """Account that it acts for."""
     label: str
-    """What it is for."""
+    """Purpose of the token."""
     role: Role
-    """At most this, and never more than its account may."""
+    """Highest role of the token, which never has more than its account may."""
     created_at: datetime
-    """When, UTC."""
+    """Time of creation, UTC."""
     expires_at: datetime
-    """Until when it holds, UTC."""
+    """Time until which it is valid, UTC."""
     revoked_at: datetime | None
-    """When it was revoked, UTC."""
+    """Time of revocation, UTC."""
     last_used_at: datetime | None
-    """To the hour, UTC."""
+    """Hour of the last use, UTC."""
 
 
 @dataclass(frozen=True)
 class Person:
-    """Who sent a request."""
+    """Sender of a request."""
 
     login: str
     """Account; empty of somebody who did not sign in."""
     name: str
-    """As written under what this person does; empty where the person says it in each request."""
+    """Name under the person's actions; empty where the person gives it in each request."""
     role: Role | None
-    """None of somebody who may only sign in."""
+    """Role; None for somebody who may only sign in."""
     token: str = ""
     """Label of the token that was shown; empty of a browser."""
     token_id: int | None = None
-    """Its number; None of a browser."""
+    """Number of the token; None of a browser."""
     csrf: str = ""
-    """What every form of a signed-in browser brings back; empty of a program."""
+    """Secret that every form of a signed-in browser returns; empty of a program."""
 
     def may(self, needed: Role) -> bool:
         """Whether this person may do what a role may."""
@@ -99,17 +99,17 @@ class Person:
 
     @property
     def account(self) -> str:
-        """As the audit trail names it: the account, and the token that acted for it."""
+        """Name in the audit trail: the account, and the token that acted for it."""
         return say("{login}, token {token}", login=self.login, token=self.token) if self.token else self.login
 
 
 UNNAMED = "whoever is at this machine"
-"""Who administers, where nobody needs to sign in."""
+"""Name of the administrator where nobody needs to sign in."""
 COMMAND_LINE = "command line"
-"""As the audit trail names whoever reaches the database."""
+"""Name in the audit trail of anybody with direct access to the database."""
 STRANGER = Person("", "", None)
 """Somebody who has not signed in."""
 LOOKING = Person("", "", Role.VIEWER)
 """Somebody who has not signed in where there is nothing but a demonstration to see."""
 EVERYBODY = Person("", "", Role.ADMIN)
-"""Everybody where nobody needs to sign in."""
+"""Person in place of everybody where nobody needs to sign in."""

@@ -18,7 +18,7 @@ from estimator.message import changed
 RANGES = ((0x0020, 0x04FF), (0x1E00, 0x1FFF), (0x2000, 0x20CF), (0x2190, 0x22FF))
 """First and last code point of what can be printed."""
 ABSENT = frozenset("\u2041\u2043\u2053")
-"""Within the ranges, but in neither font."""
+"""Characters within the ranges, but in neither font."""
 UNSEEN = frozenset({"Cc", "Cf", "Cn", "Co", "Cs", "Zl", "Zp"})
 """Categories of Unicode that leave no mark on paper, or turn the direction of writing."""
 BREAKS = frozenset("\n\t")
@@ -67,7 +67,7 @@ def _printable(value: Any) -> Any:
 Element: TypeAlias = _Element
 """A part of a tree."""
 ILLEGAL = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-"""What XML 1.0 (section 2.2, Char) cannot hold."""
+"""Characters that XML 1.0 (section 2.2, Char) cannot hold."""
 
 
 def document(root: Element) -> bytes:

@@ -57,7 +57,7 @@ class Catalogue:
         return chart_in(definition, self.say, self._locale)
 
     def _forms(self, english: str) -> Sequence[str]:
-        """Of a whole text or template, also with another first letter or without its full stop."""
+        """The translated forms of a whole text or template, also with another first letter or without its full stop."""
         if known := self._known.get(english):
             return known
         other_case = english[:1].swapcase() + english[1:]
@@ -112,7 +112,7 @@ _NUMBER = r"\d+(?:,\d{3})*(?:\.\d+)?"
 VALUE = re.compile(rf"([+−±]?{_NUMBER}(?:(?:\s±\s|–|…){_NUMBER})?)(\s?)([^\s\d.,:;]*)(\s*)")
 """A text that is one number, or a range, and at most one measure."""
 NARROW = "\u202f"
-"""Between thousands."""
+"""Space between thousands."""
 
 
 def value_in(text: str, say: Callable[[str], str]) -> str:

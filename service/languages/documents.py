@@ -8,7 +8,7 @@ UNTRANSLATED = frozenset(
 )
 """Fields that are keys of the template, or hold names and texts of people."""
 VALUE, BY_SOMEBODY = "value", "is_written"
-"""Of a line of a paper: its value, and whether somebody wrote it."""
+"""Fields of a line of a paper: its value, and whether somebody wrote it."""
 
 
 def document_in(data: Any, say: Callable[[str], str]) -> Any:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from estimator.message import PLACE
 
 LETTERS = re.compile(r"[A-Za-z]{2}")
-"""In every message."""
+"""Pattern that every message contains."""
 COUNT = "n"
 """The placeholder whose number decides between singular and plural."""
 TAG = re.compile(r"</?[a-z]\w*>")
@@ -18,14 +18,14 @@ class MessageEntry:
     """An entry of a catalogue."""
 
     text: str
-    """As in the source; the singular of a counted thing."""
+    """Text as in the source; the singular of a counted thing."""
     many: str = ""
     """The plural; empty where nothing is counted."""
     place: str = ""
 
     @property
     def id(self) -> str | tuple[str, str]:
-        """Its id in a gettext catalogue."""
+        """Id of the entry in a gettext catalogue."""
         return (self.text, self.many) if self.many else self.text
 
 

@@ -1,4 +1,4 @@
-"""The languages that the service speaks, and which one somebody wants."""
+"""The languages of the service, and the choice among them."""
 
 from collections.abc import Iterator, Mapping, MutableMapping
 from enum import Enum
@@ -21,7 +21,7 @@ class Language(Enum):
 
     @property
     def name_of_itself(self) -> str:
-        """As its speakers call it."""
+        """Name of the language in itself."""
         return {Language.ENGLISH: "English", Language.RUSSIAN: "Русский"}[self]
 
 
@@ -31,12 +31,12 @@ def named(tag: str) -> Language | None:
 
 
 def chosen_by_query(query: str) -> Language | None:
-    """What the address asks for."""
+    """The language that the address names."""
     return named(parse_qs(query).get(QUERY, [""])[-1])
 
 
 def chosen_before(cookies: str) -> Language | None:
-    """What was chosen by hand before, by the request's cookies."""
+    """The language chosen by hand before, from the request's cookies."""
     try:
         kept = SimpleCookie(cookies).get(COOKIE)
     except CookieError:
@@ -62,7 +62,9 @@ def of_environment(variables: Mapping[str, str]) -> Language:
 
 
 def preferred(header: str) -> Language:
-    """The first of our languages in Accept-Language, by its weights (RFC 9110, 12.5.4); English where none is."""
+    """The first language of the service in Accept-Language, by its weights (RFC 9110, 12.5.4); English where none
+    is.
+    """
     for tag in _by_weight(header):
         if tag == "*":
             return Language.ENGLISH

@@ -9,14 +9,14 @@ NAME = re.compile(r"[A-Za-z_]\w*")
 QUOTED = re.compile(r"\"[^\"]*\"|'[^']*'")
 FILTER = re.compile(r"\|[\w\s(),.'\"]*$")
 ONE_OR_MANY = re.compile(r"""\{\{\s*(?:""|'')\s*if\s+(.+?)\s*==\s*1\s+else\s+["'](\w+)["']\s*\}\}""")
-"""How a template says that a word has another ending after other numbers."""
+"""Pattern of a template's ending of a word that depends on a number."""
 TOO_COMMON = frozenset(("page", "loop", "if", "else", "or", "and", "not", "length", "none", "in", "is"))
 """Names that tell a translator nothing."""
 
 
 @dataclass
 class Piece:
-    """Under construction: the text of one and of many, what stands in the places, and what is counted."""
+    """Message under construction: the text of one and of many, the expressions in its places, and the counted one."""
 
     one: str = ""
     many: str = ""
@@ -58,7 +58,7 @@ class Piece:
         self.counted = ending[1]
 
     def message(self, file: str) -> MessageEntry:
-        """As a catalogue has it: spaces and line ends are one space."""
+        """The message as in a catalogue: spaces and line ends are one space."""
         singular, plural = " ".join(self.one.split()), " ".join(self.many.split())
         if not self.counted:
             return MessageEntry(singular, place=file)
@@ -70,7 +70,7 @@ class Piece:
 
 
 def name_of(expression: str) -> str:
-    """What a translator reads in the place of an expression: the last name in it that says something."""
+    """The name of an expression for translators: the last telling name in it."""
     inner = FILTER.sub("", QUOTED.sub("", expression.strip("{} ")))
     called = re.match(r"\w+(?=\()", inner)
     if called:

@@ -19,11 +19,11 @@ SILENT_CALLS = frozenset(
 SPACED = re.compile(
     r"[A-Za-z]{2,}[,:;.]? +[(\"']?[a-z±={\x00A-Z]|\x00[,:;.]? (a )?[a-z]{2,}|^ ?[a-z]{2,} ?[:\x00(]|^[a-z]{4,} \d"
 )
-"""At least two words, or a word beside a value."""
+"""Pattern of a text with at least two words, or a word beside a value."""
 HEADING = re.compile(r"^[A-Z][a-z]+[.:!?]?$|^[A-Z][a-z]+,? [^\sA-Za-z]{1,3}(, \S+)?$")
 CODE = re.compile(r"[_<>{}\[\]\\|=&#\n]|://|^[a-z]+/|^--|^var\(|:[QTNO]$|^-//|^[a-z]+-[a-z]+, ")
 QUERY = re.compile(r"^SELECT ")
-"""Not in words."""
+"""Pattern of a query, which is not in words."""
 SENTENCE = re.compile(r"(\S+ ){4}.*[.:]$|(\S+ ){8}")
 """Words all the same: ``with the coverage factor k = 2.``"""
 TEMPLATES = {"say": 1, "say_count": 2, "translated": 1}
@@ -93,7 +93,7 @@ def _texts_in(node: ast.AST, *, described: bool) -> Iterator[ast.expr]:
 
 
 def _children(node: ast.AST) -> Iterator[ast.AST]:
-    """Without documentation, decorators, annotations, keys, and examples for programs."""
+    """The children of a node without documentation, decorators, annotations, keys, and examples for programs."""
     for name, value in ast.iter_fields(node):
         if isinstance(node, ast.keyword) and node.arg == "json_schema_extra":
             continue

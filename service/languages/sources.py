@@ -21,11 +21,11 @@ HEADING_MODULES = re.compile(
     r"|.*_pages\.py|.*/(view|gain|lines|conditions|template|preview|pattern|layout/)"
     r"|outlook/reading|ingest/session_keys)"
 )
-"""Where single capitalised words are shown to people too."""
+"""Modules in which single capitalised words are shown to people too."""
 SETTINGS = "service/settings.py"
-"""Its page shows the descriptions of the settings."""
+"""Module of the settings; a page shows their descriptions."""
 COMMANDS = ("service/client/connection.py", "service/commands/*.py")
-"""Only what they say in calls is for people: their help stays English."""
+"""Modules in which only the texts in calls are for people: their help stays English."""
 PACKAGES = ("service", "estimator")
 IGNORED = (
     "service/app.py",

@@ -16,7 +16,7 @@ SENTENCE = re.compile(r"^[^\W\d_].* .*\w|^[A-Z][a-z]+[.:]?$|^ .*[a-z]{2} .|[a-z]
 """A literal that is words anywhere: several of them, or a capitalised one."""
 WORDS = re.compile(r"[\w ,;:.]*[a-z]{2,}[\w ,;:.]*")
 ADDRESS_OR_KEY = re.compile(r"[/<>=&?#_]|^[a-z]+(-[a-z]+)+$")
-"""In addresses and keys, and not in words."""
+"""Pattern of addresses and keys, which words do not contain."""
 IN_MESSAGE = re.compile(r"\{(\w+)\}|</?([a-z]\w*)>")
 Forms = Callable[[MessageEntry], Sequence[str]]
 """Translations of a message: a text, or one for every plural form; empty where there is none."""

@@ -34,7 +34,9 @@ def updated(language: Language, extracted: Iterable[MessageEntry]) -> Catalog:
 
 
 def written(catalogue: Catalog, head: str) -> str:
-    """As a file with its header; without line numbers, which change with every edit of a source."""
+    """The catalogue as the text of a file with its header; without line numbers, which change with every edit of a
+    source.
+    """
     file = BytesIO()
     write_po(file, catalogue, width=WIDTH, include_lineno=False, ignore_obsolete=True, omit_header=True)
     return f"{head}\n\n{file.getvalue().decode()}"

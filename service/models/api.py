@@ -32,7 +32,7 @@ AnyScope = Annotated[Scope, BeforeValidator(_with_a_space)]
 
 
 class DiagnosisDocument(BaseModel):
-    """imu-diagnosis/1: what the simulation gets wrong about a session, and how it was made."""
+    """imu-diagnosis/1: the diagnosis of a session, and how it was made."""
 
     format: str = Field(description="`imu-diagnosis/1`.")
     unit: str = Field(description="Serial number of the unit.")
@@ -105,17 +105,18 @@ class ModelDocument(ModelRevision):
     """One accepted or withdrawn cause: a numbered revision of a model."""
 
     evidence: Json  # type: ignore[assignment]  # as it is stored
-    """p-value, strength, amplitude with sigma, and gain of the finding; `pooled`: what a group of sessions adds,
-    null where a single session showed it."""
+    """p-value, strength, amplitude with sigma, and gain of the finding; `pooled`: facts from a group of sessions, null
+    where a single session showed it.
+    """
 
 
 @answer
 @dataclass(frozen=True, kw_only=True)
 class ModelAndRecomputations(ModelDocument):
-    """A revision with what it brought."""
+    """A revision with its effects."""
 
     recomputations: tuple[Recomputation, ...]
-    """Units whose sessions are computed again because of it: of what groups of sessions show."""
+    """Units whose sessions are computed again because of it, for a finding of a group."""
 
 
 def model_document(revision: ModelRevision) -> ModelDocument:
@@ -138,8 +139,9 @@ router = APIRouter(prefix="/models", tags=["models"])
 
 @router.post("/{id}/withdraw", status_code=201, responses=errors(400, 404, 409, 422))
 def withdraw_cause(id: Number, handling: Handling, reception: ReceptionOf, now: Now, person: PersonOf) -> ModelDocument:
-    """Take an accepted cause out of the model: a revision of its own; sessions from now on are calibrated without.
-    What a group of sessions showed goes out of the stored ones too."""
+    """Take an accepted cause out of the model: a revision of its own; sessions from now on are calibrated without. A
+    finding of a group is taken out of the stored sessions too.
+    """
     withdrawal = withdraw_model(reception.storage, id, person.signs(handling.by), handling.why, now)
     recompute_beside(reception, now)
     return model_document(withdrawal)
@@ -147,7 +149,7 @@ def withdraw_cause(id: Number, handling: Handling, reception: ReceptionOf, now: 
 
 @router.get("/{id}", responses=errors(404, 422))
 def read_model(id: Number, store: Reading) -> ModelAndRecomputations:
-    """One revision, with what it moved in the sessions that it concerns."""
+    """One revision, with its effects on the sessions that it concerns."""
     return ModelAndRecomputations(**_fields(Models(store).get(id)), recomputations=tuple(Recomputations(store).of(id)))
 
 

@@ -67,7 +67,7 @@ class ModelView:
     amplitudes: tuple[str, ...]
     evidence: str
     gain: str
-    """What it gained for its sensors, in one sentence."""
+    """Gain for its sensors, in one sentence."""
     withdrawn: ModelRevision | None
     holds: bool
     progress: str
@@ -174,7 +174,7 @@ def accept(
     by: By,
     note: FormLines = "",
 ) -> RedirectResponse:
-    """Accepts what a group of sessions shows, and shows what that moves."""
+    """Accepts a finding of a group of sessions, and shows the results."""
     with reception.storage.database.reading() as store:
         group = Groups(store).find(level, name)
     accepted = accept_lasting(reception.storage, group, NewLasting(cause, tuple(sensors), by, note), now)

@@ -20,7 +20,7 @@ class Scope(StrEnum):
 
 
 SCOPES = {"unit": Scope.UNIT, "type": Scope.UNIT_TYPE, "stand": Scope.STAND}
-"""By the level of the sessions that show a cause."""
+"""Scope of the model by the level of the sessions that show a cause."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class NewLasting:
 
     cause: str
     sensors: tuple[str, ...]
-    """Of the finding; empty where the cause alone identifies it."""
+    """Sensors of the finding; empty where the cause alone identifies it."""
     by: str
     note: str
 
@@ -59,7 +59,7 @@ class Pooled(Document, forms=dict.fromkeys(("first", "last", "since"), MOMENT)):
     since: str | None
     """Start of the first session with the effect, where earlier ones lack it."""
     kind: str
-    """Of its sensors; empty without any."""
+    """Kind of its sensors; empty without any."""
     shape: float | None
     spread: tuple[float, ...]
     """τ of each sensor in turn, in the unit of its amplitudes."""
@@ -70,7 +70,7 @@ class Pooled(Document, forms=dict.fromkeys(("first", "last", "since"), MOMENT)):
     log_score: float | None
     """Gain of those later ones."""
     words: tuple[str, ...] = ()
-    """Of a learned term: what each amplitude multiplies; empty for a cause."""
+    """Functions that the amplitudes of a learned term multiply, in words; empty for a cause."""
 
 
 @dataclass(frozen=True)
@@ -87,9 +87,9 @@ class AcceptedFinding:
     alternatives: tuple[str, ...]
     sentence: str
     gain: Gain | None
-    """None for a group of sessions."""
+    """Gain of the finding; None for a group of sessions."""
     pooled: Pooled | None = None
-    """None for a single session: then each session fits the size."""
+    """Facts from a group; None for a single session: then each session fits the size."""
 
 
 @answer
@@ -100,7 +100,7 @@ class ModelRevision:
     id: int
     """Number of the revision; all models are numbered through."""
     scope: Scope
-    """Whose model it is."""
+    """Scope of the model: a unit, a unit type or a stand."""
     subject: str
     """Serial number of the unit, or name of the unit type or of the stand."""
     cause: str
@@ -110,14 +110,15 @@ class ModelRevision:
     session: str
     """The session that showed it."""
     evidence: AcceptedFinding | None
-    """p-value, strength, amplitude with sigma, and gain of the finding; `pooled`: what a group of sessions adds,
-    null where a single session showed it."""
+    """p-value, strength, amplitude with sigma, and gain of the finding; `pooled`: facts from a group of sessions, null
+    where a single session showed it.
+    """
     accepted_by: str
-    """Who accepted it."""
+    """Person who accepted it."""
     note: str
-    """Why."""
+    """Reason for accepting it."""
     accepted_at: datetime
-    """When, UTC."""
+    """Time of acceptance, UTC."""
     withdraws: int | None = None
     """The revision that this one withdraws; null for an accepted cause."""
 
@@ -172,11 +173,11 @@ class MovedVerdict:
     session: str
     """Id of the session."""
     started_at: datetime
-    """When it was measured."""
+    """Start of the measurement."""
     before: Verdict
-    """Its verdict before."""
+    """Verdict before."""
     after: Verdict
-    """Its verdict since."""
+    """Verdict since."""
 
 
 @dataclass(frozen=True)
@@ -203,24 +204,24 @@ class MovedParameter:
     change: float
     """SI; relative of a scale factor, rad of an axis."""
     u: float
-    """Its standard uncertainty."""
+    """Standard uncertainty of the parameter."""
 
 
 @answer
 @dataclass(frozen=True)
 class Recomputed:
-    """What became of a unit's sessions."""
+    """Result of a recomputation for a unit's sessions."""
 
     sessions: int
-    """How many it has."""
+    """Sessions of the unit."""
     recomputed: int
-    """How many have another calibration."""
+    """Sessions with another calibration."""
     left: int
-    """How many cannot be calibrated under the model, and keep what they have."""
+    """Sessions that cannot be calibrated under the model, and keep their calibration."""
     verdicts: tuple[MovedVerdict, ...]
     """Sessions that have another verdict since."""
     furthest: MovedParameter | None
-    """What moved most; null where nothing moved."""
+    """The parameter that moved most; null where nothing moved."""
 
 
 @answer
@@ -231,10 +232,10 @@ class Recomputation:
     unit: str
     """Serial number."""
     state: Progress
-    """`waiting`, `done`, or `given up`: then its sessions keep what they had."""
+    """`waiting`, `done`, or `given up`: then its sessions keep their calibrations."""
     done_at: datetime | None
-    """When, UTC; null while it waits."""
+    """Time of completion, UTC; null while it waits."""
     outcome: Recomputed | None
-    """What became of its sessions; null until it is done."""
+    """Result for its sessions; null until it is done."""
     failed: str
-    """Why the last try failed; empty where none did."""
+    """Reason why the last attempt failed; empty where none did."""

@@ -20,11 +20,11 @@ class AcceptedCause:
     at: datetime
     note: str
     gain: str
-    """What it gained, in one sentence."""
+    """Gain from the cause, in one sentence."""
 
 
 def gain_of(revision: ModelRevision) -> str:
-    """What an accepted cause gained for its sensors in the session that showed it; empty where none was measured."""
+    """The gain of an accepted cause for its sensors in the session that showed it; empty where none was measured."""
     evidence = revision.evidence
     return "" if evidence is None or evidence.gain is None else gain_in_words(evidence.gain, revision.sensors)
 

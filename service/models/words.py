@@ -35,7 +35,7 @@ def progress_of(recomputations: Sequence[Recomputation]) -> str:
 
 
 def left_in_words(recomputation: Recomputation) -> str:
-    """Why a unit's sessions are as before; empty while it waits."""
+    """The reason why a unit's sessions are as before; empty while it waits."""
     match recomputation.state:
         case Progress.GIVEN_UP:
             return GIVEN_UP
@@ -63,7 +63,7 @@ def moved_in_words(moved: MovedParameter | None) -> str:
 
 
 def _shown(value: float, measure: Measure) -> str:
-    """With two significant digits."""
+    """The value with two significant digits."""
     shown = value * measure.factor
     return f"{number(shown, decimals(abs(shown)))}{THIN}" + measure.label
 

@@ -1,1 +1,1 @@
-"""When a unit must come back and why: drift, forecast, risk."""
+"""Next calibrations of units and their reasons: drift, forecast, risk."""

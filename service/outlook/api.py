@@ -32,7 +32,7 @@ HEAD = (
 ESCAPED = str.maketrans({"\\": r"\\", ";": r"\;", ",": r"\,", "\n": r"\n"})
 """Section 3.3.11."""
 LONGEST = 75
-"""Bytes of a line without its end (section 3.1); what is longer goes on in the next, which begins with a blank."""
+"""Bytes of a line without its end (section 3.1); a longer one continues in the next, which begins with a blank."""
 CONTINUES = 0b10
 """The highest two bits of a byte within a character of UTF-8."""
 
@@ -72,7 +72,7 @@ def _text(value: str) -> str:
 
 
 def _folded(line: str) -> bytes:
-    """With its end; characters stay whole."""
+    """A content line folded to its longest length, with its end; characters stay whole."""
     rest, parts, room = line.encode(), [], LONGEST
     while len(rest) > room:
         cut = room
@@ -89,7 +89,7 @@ CALENDAR = "text/calendar"
 MOST_DAYS = 1000
 """Units in the calendar, the first that are due: years of work, and little to fetch every hour."""
 TEXT = {"type": "string"}
-"""What the description says of the answer."""
+"""OpenAPI schema of the answer."""
 
 
 @router.get("/due.ics", responses={200: {"content": {CALENDAR: {"schema": TEXT}}}, **errors()}, response_class=Response)

@@ -1,4 +1,4 @@
-"""Step: what a unit's outlook is worked out from, and the working out, which no transaction waits for."""
+"""Step: the sources of a unit's outlook, read from the store → the outlook, computed while no transaction is open."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -22,25 +22,25 @@ from service.types.store import UnitTypes
 from service.units.store import Services, Units
 
 END_OF_TIME = datetime(9999, 1, 1, tzinfo=UTC)
-"""After every break."""
+"""A time after every break."""
 RULE = b"6"
-"""Version of what an outlook says of a history: those made by an earlier one are made again."""
+"""Version of the rules of outlooks: those made by an earlier one are made again."""
 AT_HAND = 32
 """Parameters whose prior is kept: those of several types. Units are worked out again type by type."""
 TypeHistories = dict[tuple[str, str], tuple[bytes, ...]]
-"""What a type's units tell, by kind of sensor and parameter."""
+"""Packed histories of the type's units, by kind of sensor and parameter."""
 
 
 @dataclass(frozen=True)
 class Sources:
-    """What an outlook is worked out from."""
+    """Sources of a unit's outlook."""
 
     past: Past
     known: Histories
-    """The unit's."""
+    """Histories of the unit."""
     histories: TypeHistories
     together: tuple[str, ...]
-    """What all sensors did together, and what a diagnosis explains of the latest changes, in words."""
+    """Motions common to all sensors, and the parts of the latest changes that a diagnosis explains, in words."""
 
 
 def known_of(store: Store, serial: str) -> Histories:
@@ -82,17 +82,17 @@ def worked_out(sources: Sources) -> UnitOutlook:
 
 @lru_cache(maxsize=AT_HAND)
 def learned(rows: tuple[bytes, ...]) -> Prior:
-    """What the histories of a type's units let expect of a parameter. It is the same for most units of a large type."""
+    """The prior of a parameter from the histories of a type's units. It is the same for most units of a large type."""
     return learn([item for row in rows for item in unpacked(row)])
 
 
 def of_type(store: Store, unit: int) -> TypeHistories:
-    """What the units of a unit's type contribute to the parameters that this one has."""
+    """The histories of the type's units for each parameter of the unit."""
     return {place: Outlooks(store).histories(unit, *place) for place in sorted(Outlooks(store).places(unit))}
 
 
 def digest(histories: TypeHistories) -> str:
-    """64 hexadecimal digits, the same for the same histories."""
+    """The digest of histories, 64 hexadecimal digits."""
     return sha256(RULE + b"".join(_bytes(histories))).hexdigest()
 
 

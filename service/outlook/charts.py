@@ -128,7 +128,7 @@ def _track_point(change: MeasuredChange, is_drawn: bool, unit: Measure) -> Track
 
 
 def judged_as(point: HistoryPoint) -> Condition:
-    """What a point is marked as."""
+    """The condition with which a point is marked."""
     return NOT_JUDGED if point.tolerance is None else condition_of(point.verdict, is_reference=point.is_reference)
 
 
@@ -148,9 +148,9 @@ def tolerance_text(track: ParameterCourse) -> str:
 
 
 Trends = Mapping[tuple[str, str, str], ParameterTrend]
-"""By sensor, kind and parameter."""
+"""Trends by sensor, kind and parameter."""
 NAMES = ("fan", "trend")
-"""Of the data sets."""
+"""Names of the data sets."""
 YEAR_SECONDS = 365.25 * 86400
 """Julian years, as rates a year are given in."""
 ROOM = 1.5
@@ -220,7 +220,7 @@ HEIGHT = 150
 
 @cache
 def history_spec() -> Json:
-    """With blanks for the unit and the ranges."""
+    """The specification, with blanks for the unit and the ranges."""
     points, limits, services, notes = (alt.NamedData(name=n) for n in (DATA_FORM, "limits", "services", "notes"))
     x = alt.X("t:T", title=None, axis=alt.Axis(tickCount=4), scale=x_scale(type="utc"))
     y = y_axis(y_scale(zero=False))
@@ -258,7 +258,7 @@ def _breaks(services: "alt.NamedData") -> "alt.Chart":
 
 
 def _remarks(notes: "alt.NamedData") -> "alt.Chart":
-    """A mark at the upper edge; what it says is read by pointing at it, and in the list below the charts."""
+    """Marks of notes at the upper edge; their text is shown on pointing at one, and in the list below the charts."""
     chart: alt.Chart = (
         alt.Chart(notes)
         .mark_point(shape="triangle-down", filled=True, size=70, opacity=1, color="var(--second)")
@@ -357,8 +357,9 @@ def _short(value: float | None) -> float | None:
 
 
 def _span(tracks: Sequence[ParameterCourse], trends: Trends, events: Sequence[datetime]) -> list[str]:
-    """One stretch of time for all sensors, so that what happened together stands in line; with what happened since
-    their first session, a note of today among it."""
+    """One stretch of time for all sensors, so that simultaneous events stand in line; it includes events since their
+    first session, a note of today among them.
+    """
     dates = [p.at for track in tracks for p in track.points] + forecast_dates(tracks, trends)
     dates += [at for at in events if at > min(dates)]
     air = (max(dates) - min(dates)) * AIR or timedelta(days=1)

@@ -1,10 +1,11 @@
-"""Step: what a diagnosis gives to the stand, to the record, to temperature or to a course that sensors share is no
-change of a sensor: it is taken off before histories, dates and flags are made of the changes.
+"""Step: changes with a diagnosis → the remaining changes of the sensors. Changes that a diagnosis attributes to the
+stand, to the record, to temperature or to a course common to sensors are taken off before histories, dates and flags
+are made.
 
-What is left of a session's change is that of its calibration with the named causes in the model, whose covariance holds
-how well they are known. The part that was taken off, δ, is the named cause's with a probability p; where others are
-possible it need not be there, so that u² = u'² + (1 − p)·δ² for what is left. A sensor with a cause of its own keeps
-its whole change. Of a reference the part is taken off what all later changes are counted from.
+The rest of a session's change is that of its calibration with the named causes in the model, whose covariance holds
+their uncertainties. The part that was taken off, δ, belongs to the named cause with a probability p; where others are
+possible it need not be there, so that u² = u'² + (1 − p)·δ² for the rest. A sensor with a cause of its own keeps its
+whole change. For a reference the part is taken off the origin of all later changes.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -30,7 +31,7 @@ from service.types.rules import tolerances_of
 from service.types.store import UnitTypes
 
 SHARED_SCOPES = ("stand", "fixture", "record")
-"""Of causes that act on no sensor."""
+"""Scopes of causes that act on no sensor."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,15 +41,15 @@ class _ExplainedSession:
     session: str
     found: Diagnosed
     calibration: Calibration
-    """In force."""
+    """Calibration in force."""
     reference: Calibration
-    """That its changes are counted from."""
+    """Reference from which its changes are counted."""
 
 
 def left_of(
     store: Store, serial: str, changes: Sequence[ChangeRow], references: Sequence[ReferenceRow]
 ) -> dict[Place, Left]:
-    """What is left of a unit's changes, where a diagnosis explains a part of them."""
+    """The rest of a unit's changes, where a diagnosis explains a part of them."""
     rows: tuple[ChangeRow | ReferenceRow, ...] = (*references, *changes)
     sessions = {row.session: (row.block, comparable(row.programme)) for row in rows}
     found = {id: diagnosed for id, diagnosed in Diagnoses(store).with_findings(sessions).items() if explains(diagnosed)}
@@ -73,7 +74,7 @@ def _left(session: _ExplainedSession, tolerances: Mapping[tuple[str, str], float
 
 
 def _beside(whole: ParameterJudgement, rest: ParameterJudgement, doubt: float) -> Left | None:
-    """What is left of one change; None where either is not known."""
+    """The rest of one change; None where either is not known."""
     if whole.change is None or rest.change is None or rest.change_own is None:
         return None
     part = np.subtract(whole.change, rest.change)
@@ -106,7 +107,7 @@ def _doubt(findings: Iterable[Finding]) -> float:
 
 
 def _probability(finding: Finding) -> float:
-    """Of the named cause among those that are possible; of one that the ranking does not know, as likely as any."""
+    """Probability of the named cause among the possible ones; if the ranking lacks it, all are equally likely."""
     if not finding.alternatives:
         return 1.0
     ranked = {rival.cause: rival.probability for rival in reversed(finding.ranking)}

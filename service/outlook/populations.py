@@ -1,4 +1,4 @@
-"""How the units of a type drift, and who stands far out."""
+"""Drift of the units of a type, and those far out."""
 
 from dataclasses import dataclass
 from math import sqrt
@@ -21,7 +21,7 @@ class Placed:
 
 @dataclass(frozen=True)
 class Population:
-    """How the units of a type drift in one parameter."""
+    """Drift of the units of a type in one parameter."""
 
     unit_type: str
     kind: str
@@ -30,13 +30,13 @@ class Population:
     """Tolerances a year."""
     spread: float
     rates: int
-    """That it is of: one a sensor of every unit."""
+    """Number of rates: one a sensor of every unit."""
     lots: int
     """Production lots of several units that were set against it."""
     fast: tuple[Placed, ...]
-    """Of the rates that matter the furthest out, the furthest first."""
+    """Furthest of the rates that matter, the furthest first."""
     evident: tuple[Placed, ...]
-    """Of the rates that chance does not explain the furthest out."""
+    """Furthest of the rates that chance does not explain."""
     far_lots: tuple[tuple[str, float], ...]
     """The furthest lots and their distances."""
 

@@ -1,7 +1,7 @@
-"""When a unit must be calibrated next and why.
+"""The date and the reason of a unit's next calibration.
 
-What is stored is worked out when a unit's history changes (`refresh_outlook`); read, it is only set against the clock
-and against what is kept of the rates of its type (`summarise`).
+`refresh_outlook` works out the stored part when a unit's history changes; `summarise` only compares it with the clock
+and with the stored rates of its type.
 """
 
 from collections.abc import Iterable
@@ -36,7 +36,7 @@ def dated(outlook: UnitOutlook | None, now: datetime) -> UnitOutlook | None:
 
 
 def nothing_known(serial: str) -> UnitOutlook:
-    """Of a unit whose sessions were judged before outlooks were kept."""
+    """The outlook of a unit whose sessions were judged before outlooks were kept."""
     reason = "No outlook yet: it is computed with the next session."
     return UnitOutlook(serial, None, False, reason, None, None, None, None, None, ())
 
@@ -49,7 +49,7 @@ def compared(outlook: UnitOutlook, populations: Iterable[Population], now: datet
 
 
 def _placed(trend: ParameterTrend, among: Population | None) -> ParameterTrend:
-    """In tolerances a year, as rates of a type are compared."""
+    """The trend with its distance among the rates of the type, compared in tolerances a year."""
     if among is None:
         return trend
     z = among.z(trend.rate_per_year / trend.tolerance, trend.rate_sigma / trend.tolerance)

@@ -1,4 +1,4 @@
-"""When a unit must come back and why: drift, forecast and risk as frozen records. SI inside."""
+"""Next calibrations of units and their reasons: drift, forecast and risk as frozen records. SI inside."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -30,7 +30,7 @@ class Rate:
 
 @dataclass(frozen=True)
 class DueDate:
-    """When a unit must come back, and why then."""
+    """Due date of a unit's next calibration, and the reason."""
 
     unit: str
     at: datetime
@@ -39,7 +39,7 @@ class DueDate:
 
 @dataclass(frozen=True)
 class FanPoint:
-    """Where a parameter's deviation will be at a date: quantiles, SI; relative for scale."""
+    """Quantiles of a parameter's deviation at a date, SI; relative for scale."""
 
     at: datetime
     low_90: float
@@ -50,14 +50,14 @@ class FanPoint:
 
 
 class Action(StrEnum):
-    """What a unit needs next."""
+    """Next action for a unit."""
 
     CALIBRATE = "calibrate"
-    """At its due date."""
+    """The unit is to be calibrated at its due date."""
     NOW = "act-now"
-    """It was found out of tolerance: adjust, repair or withdraw it; no date makes that better."""
+    """The unit was found out of tolerance: adjust, repair or withdraw it; no date makes that better."""
     REPEAT = "repeat"
-    """Its latest session could not decide, or hardly knows; measure again."""
+    """The latest session could not decide, or nearly so; measure again."""
     MEASURE = "measure"
     """No session has shown it yet, or none since its service."""
 
@@ -68,11 +68,11 @@ class DueRule(StrEnum):
     INTERVAL = "interval"
     """The longest interval of its type, before its risk passes the level."""
     NO_TREND = "no-trend"
-    """The same interval, for one session gives no estimate of the risk."""
+    """The longest interval, for one session gives no estimate of the risk."""
     RISK = "risk"
     """The chance that any parameter is out of tolerance passes the level."""
     MAY_BE_OUT = "may-be-out"
-    """That chance passed the level at the latest session already."""
+    """The chance that any parameter is out of tolerance passed the level at the latest session already."""
     UNDECIDED = "undecided"
     """The latest session did not decide."""
     UNFIT = "unfit"
@@ -91,7 +91,7 @@ class DueBasis:
     rule: DueRule
     """The rule that decided."""
     at: datetime | None = None
-    """Of the session or the service that it starts from."""
+    """Date of the session or the service from which it counts."""
     interval_days: float | None = None
     """Longest interval, where the rule is one."""
     risk: float | None = None
@@ -99,9 +99,9 @@ class DueBasis:
     sensor: str | None = None
     """The sensor that adds most to that chance."""
     parameter: str | None = None
-    """Its parameter."""
+    """The sensor's parameter that adds most to that chance."""
     because: Hidden[str] = ""
-    """Why the session did not decide, in a sentence, of `DueRule.UNDECIDED`."""
+    """Reason why the session did not decide, in a sentence, for `DueRule.UNDECIDED`."""
 
 
 @answer
@@ -112,21 +112,21 @@ class FoundChange:
     kind: ChangeKind
     """`walk`: it moved at no steady rate."""
     after: datetime
-    """The last session before it, or the first of all."""
+    """Last session before it, or the first of all."""
     before: datetime
-    """The first session that shows it."""
+    """First session that shows it."""
     size: float
     """SI or relative, of an axis its length; of a drift a year, of aging the first year's."""
     sigma: float
     """Standard uncertainty of it."""
     p_value: float
-    """Over all kinds, sizes and times of change that were tried on the parameter."""
+    """p-value over all kinds, sizes and times of change that were tried on the parameter."""
 
 
 @answer
 @dataclass(frozen=True)
 class TemperatureCoefficient:
-    """How a parameter follows the temperature of its sessions."""
+    """Dependence of a parameter on the temperature of its sessions."""
 
     value: float
     """SI or relative per °C; of an axis its length."""
@@ -162,9 +162,9 @@ class ParameterTrend:
     level_sigma: float
     """Standard uncertainty of it."""
     reach_50: datetime | None
-    """By then the tolerance is reached with 50 % probability."""
+    """Date by which the tolerance is reached with 50 % probability."""
     reach_90: datetime | None
-    """Before it the tolerance is reached with 10 % probability only."""
+    """Date before which the tolerance is reached with only 10 % probability."""
     population_z: float | None
     """The rate among those of the type's units, in their robust spread."""
     kind: str = ""
@@ -172,13 +172,13 @@ class ParameterTrend:
     tolerance: float = 1.0
     """T, SI; relative for scale."""
     since: Hidden[datetime | None] = None
-    """Of the first session that the trend goes through: the reference, or the first after a sudden change."""
+    """Date of the first session of the trend: the reference, or the first after a sudden change."""
     fan: Hidden[tuple[FanPoint, ...]] = ()
-    """From the last session on, a year ahead."""
+    """Forecast from the last session on, a year ahead."""
     changes: tuple[FoundChange, ...] = ()
     """Changes that chance does not explain, most evident first."""
     temperature: TemperatureCoefficient | None = None
-    """How it follows the sessions' temperature; null where they do not span any."""
+    """Dependence on the sessions' temperature; null where they do not span any."""
 
 
 @answer
@@ -195,7 +195,7 @@ class RiskPoint:
 @answer
 @dataclass(frozen=True)
 class UnitOutlook:
-    """When a unit must be calibrated next, why, and what waiting costs."""
+    """Next calibration of a unit, its reason, and the risk of waiting."""
 
     serial: str
     """Serial number."""
@@ -204,15 +204,15 @@ class UnitOutlook:
     overdue: bool
     """Whether that has passed."""
     reason: str
-    """Why then, in one sentence, made from `basis`."""
+    """Reason for that date in one sentence, made from `basis`."""
     sensor: str | None
     """The sensor that reaches its tolerance first."""
     parameter: str | None
-    """Its parameter."""
+    """The parameter that reaches its tolerance first."""
     reach_50: datetime | None
-    """By then it is reached with 50 % probability."""
+    """Date by which the tolerance is reached with 50 % probability."""
     reach_90: datetime | None
-    """Before it it is reached with 10 % probability only."""
+    """Date before which the tolerance is reached with only 10 % probability."""
     risk_at_due: float | None
     """Chance that any parameter is out of tolerance by the due date."""
     trends: tuple[ParameterTrend, ...]
@@ -224,13 +224,13 @@ class UnitOutlook:
     risk: tuple[RiskPoint, ...] = ()
     """The risk of waiting, from the latest session on."""
     together: Hidden[tuple[str, ...]] = ()
-    """What all sensors did together at the latest calibration, in sentences."""
+    """Motions common to all sensors at the latest calibration, in sentences."""
     action: Action = Action.CALIBRATE
-    """What the unit needs next."""
+    """Next action for the unit."""
     learned_from: int = 0
     """Histories of the type that the forecast rests on; 0 where it rests on units in general."""
     failed: str = ""
-    """That it could not be worked out with the latest records, why and who must act; empty where it was."""
+    """Reason why the outlook could not be computed with the latest records, and who must act; empty where it was."""
     rests_on: Hidden[str] = ""
     """Hash of those histories: another one means that the type has more to tell."""
     basis: DueBasis | None = None
@@ -252,7 +252,7 @@ class UnitOutlook:
 @answer
 @dataclass(frozen=True)
 class OutlookAnswer(UnitOutlook):
-    """When a unit must be calibrated next, why, and what waiting costs."""
+    """Next calibration of a unit, its reason, and the risk of waiting."""
 
     until: RiskPoint | None = None
     """The risk of waiting until the date that was asked for."""

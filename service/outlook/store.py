@@ -28,14 +28,14 @@ from service.units.tables import UnitRow
 
 
 def outlook_to_dicts(outlook: UnitOutlook) -> tuple[Json, Json]:
-    """What `outlook_from_dicts` reads; times are ISO 8601."""
+    """The outlook as two documents that `outlook_from_dicts` reads; times are ISO 8601."""
     written: Json = STORED.written(outlook)
     fans = [trend.pop("fan") for trend in written["trends"]]
     return written, {"risk": written.pop("risk"), "fans": fans}
 
 
 def outlook_from_dicts(document: Json, drawn: Json | None = None) -> UnitOutlook:
-    """The outlook that was written; without its fans and its risk where what is drawn was left in the store."""
+    """The outlook from its documents; without its fans and its risk where ``drawn`` was left in the store."""
     if drawn is None:
         return STORED.read(UnitOutlook, document)
     trends = [trend | {"fan": fan} for trend, fan in zip(document["trends"], drawn["fans"], strict=True)]
@@ -43,7 +43,7 @@ def outlook_from_dicts(document: Json, drawn: Json | None = None) -> UnitOutlook
 
 
 SHAPE = (len(WALKS), len(PARTS))
-"""Of the log evidence of one history."""
+"""Shape of the log evidence of one history."""
 LAWS = len(FREEDOMS)
 MARK = np.full(1, -np.inf, dtype="<f4")
 """Rows behind a positive one were written before temperature was distinguished from drifts; those behind a NaN, which
@@ -54,7 +54,7 @@ EARLIER, EARLIEST = SHAPE[1] - WARM, SHAPE[1] - WARM - 2
 
 
 def packed(histories: Sequence[Evidence]) -> bytes:
-    """What `unpacked` reads; logs relative to their largest, which is all that is learned from."""
+    """Packs histories for `unpacked`; logs relative to their largest, which suffices for learning."""
     rows = [np.concatenate([[h.span], h.log_tails, (h.log_evidence - h.log_evidence.max()).ravel()]) for h in histories]
     return MARK.tobytes() + np.asarray(rows, dtype="<f4").tobytes()
 
@@ -78,7 +78,7 @@ def unpacked(content: bytes) -> tuple[Evidence, ...]:
 
 
 MOST_UNITS = 60
-"""Whose histories a type is learned from: hundreds of parameters, which no further unit changes much."""
+"""Most units whose histories a type is learned from: hundreds of parameters, which no further unit changes much."""
 
 
 @dataclass(frozen=True)
@@ -100,10 +100,10 @@ class ChangeRow:
     temperature: float | None
     """°C"""
     value: float | None = None
-    """As measured; None of an axis."""
+    """Measured value; None for an axis."""
     reference: float | None = None
     u: float | None = None
-    """Of the value."""
+    """Standard uncertainty of the value."""
     session: str = ""
 
 
@@ -118,7 +118,7 @@ class ReferenceRow:
     """°C"""
     session: str = ""
     u: Mapping[tuple[str, str], float] = field(default_factory=dict)
-    """Of its values that follow the temperature, by sensor and parameter."""
+    """Standard uncertainties of its values that follow the temperature, by sensor and parameter."""
 
 
 OWN = (
@@ -131,7 +131,7 @@ OWN = (
 
 
 class Outlooks(Queries):
-    """When units must come back."""
+    """Outlooks of units and the histories behind them."""
 
     def changes(self, unit: int, since: datetime | None) -> tuple[ChangeRow, ...]:
         """Every judged change of a unit since a time, oldest first; not those of a recording in service or a check."""
@@ -195,7 +195,7 @@ class Outlooks(Queries):
         self._session.execute(delete(HistoryRow).where(HistoryRow.unit_id == unit))
 
     def put_histories(self, unit: int, evidence: Mapping[tuple[str, str], Sequence[Evidence]]) -> None:
-        """Rewrites what a unit's histories contribute to its type, by kind of sensor and parameter."""
+        """Rewrites the evidence of a unit's histories for its type, by kind of sensor and parameter."""
         self._session.execute(delete(HistoryRow).where(HistoryRow.unit_id == unit))
         self._session.add_all(
             HistoryRow(unit_id=unit, kind=kind, parameter=parameter, evidence=packed(histories))
@@ -204,7 +204,7 @@ class Outlooks(Queries):
         self._session.flush()
 
     def histories(self, unit: int, kind: str, parameter: str) -> tuple[bytes, ...]:
-        """Of one parameter, of the units of a unit's type, by serial number; of so many units at most."""
+        """Packed histories of one parameter for the units of a unit's type, by serial number; at most `MOST_UNITS`."""
         type_id = select(UnitRow.unit_type_id).where(UnitRow.id == unit).scalar_subquery()
         query = (
             select(HistoryRow.evidence)
@@ -219,7 +219,7 @@ class Outlooks(Queries):
         return tuple((kind, parameter) for kind, parameter in self._session.execute(query))
 
     def rests_on(self, unit: int) -> str:
-        """What a unit's outlook was made from of its type; empty where there is none."""
+        """The hash of the type's histories behind a unit's outlook; empty where there is none."""
         row = self._session.get(OutlookRow, unit)
         return "" if row is None else str(row.document["rests_on"])
 
@@ -245,7 +245,7 @@ class Outlooks(Queries):
         )
 
     def overdue(self, now: datetime) -> int:
-        """How many units should have been calibrated by now."""
+        """The number of units whose calibration is overdue."""
         return self._session.scalar(overdue_count(now)) or 0
 
     def overdue_units(self, now: datetime) -> tuple[str, ...]:
@@ -253,7 +253,7 @@ class Outlooks(Queries):
         return tuple(self._session.scalars(_overdue(now).with_only_columns(UnitRow.serial).order_by(UnitRow.serial)))
 
     def due(self, most: int, since: datetime | None = None) -> tuple[DueDate, ...]:
-        """When units must come back and why, the first to come first; those that are overdue before all."""
+        """The due dates of units with their reasons, the first to come first; overdue ones before all."""
         query = select(UnitRow.serial, OutlookRow.due, OutlookRow.reason)
         query = query.join(UnitRow, UnitRow.id == OutlookRow.unit_id).where(
             OutlookRow.due.is_not(None), UnitRow.retired_at.is_(None)
@@ -271,7 +271,7 @@ def _overdue(now: datetime) -> Select[int]:
 
 
 def overdue_count(now: datetime) -> Select[int]:
-    """How many these are."""
+    """The query for the number of overdue units."""
     return select(func.count()).select_from(_overdue(now).subquery())
 
 
@@ -294,7 +294,7 @@ def _outlooks() -> Select[OutlookRow, str | None, str]:
 
 
 def _rate(trend: ParameterTrend) -> list[str | float]:
-    """As the fields of `Rate` after those of the unit, in tolerances a year."""
+    """The fields of `Rate` after those of the unit, in tolerances a year."""
     value, sigma = trend.rate_per_year / trend.tolerance, trend.rate_sigma / trend.tolerance
     return [trend.sensor, trend.kind, trend.parameter, value, sigma, trend.significance, trend.tolerance]
 
@@ -317,18 +317,18 @@ class Populations(Queries):
     """Centre and spread of every parameter's rates, by type."""
 
     def put(self, unit_type: int, found: Sequence[Population], at: datetime) -> None:
-        """Rewrites what is known of a type."""
+        """Rewrites the populations of a type."""
         self._session.execute(delete(PopulationRow).where(PopulationRow.unit_type_id == unit_type))
         self._session.add_all(_row(unit_type, population, at) for population in found)
         self._session.flush()
 
     def of_type(self, name: str) -> tuple[Population, ...]:
-        """Of every parameter of a type."""
+        """The populations of a type, one a parameter."""
         rows = self._session.execute(_populations().where(UnitTypeRow.name == name))
         return tuple(_population(row) for row in rows)
 
     def furthest(self, most: int) -> FarOut:
-        """So many populations of those with the furthest units, and of those with the furthest lots."""
+        """At most ``most`` populations with the furthest units, and as many with the furthest lots."""
         table = PopulationRow
         far, lots = (
             select(column).where(column > 0).order_by(column.desc()).offset(most - 1).limit(1).scalar_subquery()
@@ -350,7 +350,7 @@ class Populations(Queries):
         return FarOut(tuple(_population(row[:2]) for row in rows), rates, lots_in_all)
 
     def most_evident(self, most: int) -> tuple[Population, ...]:
-        """So many of those with the units that are furthest out beyond chance, the furthest first."""
+        """At most ``most`` populations with the units that are furthest out beyond chance, the furthest first."""
         query = _populations().where(PopulationRow.most_evident > 0)
         order = (PopulationRow.most_evident.desc(), PopulationRow.unit_type_id, PopulationRow.kind)
         rows = self._session.execute(query.order_by(*order, PopulationRow.parameter).limit(most))

@@ -20,21 +20,21 @@ from service.storage.tables import Base
 
 
 class OutlookRow(Base):
-    """When a unit must come back and why, rewritten when its history changes: drift, forecast, risk."""
+    """Next calibration of a unit and its reason, rewritten when its history changes: drift, forecast, risk."""
 
     __tablename__ = "outlooks"
     unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"), primary_key=True, autoincrement=False)
     due: Mapped[datetime | None] = mapped_column(index=True)
     reason: Mapped[str] = mapped_column(Sentence)
-    """Why then, in one sentence."""
+    """Reason for the date, in one sentence."""
     rates: Mapped[list[Any]]
-    """How every parameter drifts, for the type: ``[sensor, kind, parameter, rate, sigma, significance, tolerance]``."""
+    """Drift of every parameter, for the type: ``[sensor, kind, parameter, rate, sigma, significance, tolerance]``."""
     document: Mapped[Json]
     drawn: Mapped[Json]
 
 
 class HistoryRow(Base):
-    """What a unit's histories of one parameter tell of its type, without their sessions."""
+    """Evidence on the type from a unit's histories of one parameter, without their sessions."""
 
     __tablename__ = "histories"
     unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"), primary_key=True)
@@ -44,7 +44,7 @@ class HistoryRow(Base):
 
 
 class PopulationRow(Base):
-    """How the units of a type drift in one parameter: centre and spread of their rates, and who is far out."""
+    """Drift of the units of a type in one parameter: centre and spread of their rates, and the units far out."""
 
     __tablename__ = "populations"
     __table_args__ = (
@@ -58,7 +58,7 @@ class PopulationRow(Base):
     centre: Mapped[float]
     spread: Mapped[float]
     rates: Mapped[int]
-    """That it is of: one a sensor."""
+    """Number of rates: one a sensor."""
     lots: Mapped[int]
     """Production lots that were set against it."""
     furthest: Mapped[float]

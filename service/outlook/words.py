@@ -1,4 +1,4 @@
-"""How a unit or a production lot drifts unlike the others of its type, in words."""
+"""Outlooks in words, and units and production lots whose drift differs from the others of their type."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -34,7 +34,7 @@ from service.sessions.records import StoredSession
 
 
 def drift_stands_out(sensor: str, parameter: str, value: float) -> str:
-    """Of one parameter of one unit; its rate in tolerances a year."""
+    """The drift of one parameter of a unit that stands out; its rate in tolerances a year."""
     drift = say(
         "drifts by {value} % of its tolerance a year, unlike the other units of its type.",
         value=f"{100 * abs(value):.0f}",
@@ -45,7 +45,7 @@ def drift_stands_out(sensor: str, parameter: str, value: float) -> str:
 
 
 def lot_stands_out(lot: str, unit_type: str, parameter: str) -> str:
-    """Of one parameter of a lot."""
+    """The drift of one parameter of a lot that stands out."""
     parts = {"lot": lot, "unit_type": unit_type, "parameter_names": PARAMETER_NAMES[parameter]}
     return say("Lot {lot} of {unit_type}: {parameter_names} drifts unlike in the other units.", **parts)
 
@@ -83,7 +83,7 @@ MOST_NAMED = 6
 
 
 def explained_in_words(at: datetime, parts: Sequence[tuple[TrackKey, float]]) -> str:
-    """What a diagnosis gives to the stand, or to what sensors share, of the changes of a session."""
+    """The changes of a session that a diagnosis attributes to the stand or to a cause common to sensors."""
     named = [
         say(
             "{sensor} {parameter_names} {size}",
@@ -123,7 +123,7 @@ def _follows(trend: ParameterTrend, warm: TemperatureCoefficient) -> str:
 
 
 def _sized(trend: ParameterTrend, size: float, sigma: float, per: str = "{rate}") -> str:
-    """With U, k = 2."""
+    """The size with U, k = 2."""
     measure = deviation_measure(trend.kind, trend.parameter, abs(size))
     return signed(size, 2 * sigma, Measure(say(per, rate=measure.label), measure.factor))
 
@@ -134,7 +134,9 @@ NOTHING_DUE = "Nothing is due."
 
 
 def reason_of(basis: DueBasis, due: datetime | None) -> str:
-    """Why a unit comes back then, or waits for no date: the rule that decided, with its parts and nothing else."""
+    """The reason why a unit comes back then, or waits for no date: the rule that decided, with its parts and nothing
+    else.
+    """
     if basis.at is None:
         return "No calibration yet."
     if basis.rule is DueRule.RISK and due is not None:
@@ -172,7 +174,9 @@ def _place(basis: DueBasis) -> str:
 
 
 def foreseen(outlook: UnitOutlook) -> str:
-    """Which parameter reaches its tolerance first, and when, whatever set the date; empty where nothing is known."""
+    """The first parameter to reach its tolerance, and the date, whatever set the due date; empty where nothing is
+    known.
+    """
     if not outlook.trends or outlook.action is Action.NOW:
         return ""
     if outlook.reach_90 is None or outlook.parameter is None:
@@ -184,19 +188,19 @@ def foreseen(outlook: UnitOutlook) -> str:
 
 
 def calibrated(session: StoredSession) -> str:
-    """Of a unit whose calibration was due."""
+    """The remark on a unit whose calibration was due and is done."""
     return say("Calibrated on {started_at}.", started_at=day_of(session.started_at))
 
 
 def was_due(due: datetime, reason: str) -> str:
-    """Of a unit whose date has passed; ``reason`` is that of its date."""
+    """The remark on a unit whose date has passed; ``reason`` is that of its date."""
     return say("Calibration was due on {date}. {reason}", date=day_of(due), reason=reason)
 
 
 FAR = 5.0
 """Standard uncertainties from which on a distance from the reference is beyond doubt."""
 WAITS = (timedelta(days=91), timedelta(days=182), timedelta(days=365))
-"""From today on: a quarter, half a year and a year, as calibrations are put off."""
+"""Times of waiting from today: a quarter, half a year and a year, as calibrations are put off."""
 
 
 @dataclass(frozen=True)
@@ -209,16 +213,16 @@ class Wait:
 
 @dataclass(frozen=True)
 class NextCalibration:
-    """What a unit's page says of its future."""
+    """The outlook on a unit's page."""
 
     reason: str
     """The rule that set the date."""
     foreseen: str
-    """Which parameter reaches its tolerance first; empty where nothing is known."""
+    """First parameter to reach its tolerance; empty where nothing is known."""
     moving: tuple[str, ...]
-    """Which parameters drift or changed suddenly."""
+    """Parameters that drift or changed suddenly."""
     together: tuple[str, ...]
-    """What all sensors did together."""
+    """Motions common to all sensors."""
     waits: tuple[Wait, ...]
 
 
@@ -253,7 +257,7 @@ def _wandered(trend: ParameterTrend) -> str:
 
 
 def _waits(outlook: UnitOutlook, now: datetime) -> tuple[Wait, ...]:
-    """From today, and at the due date where that is still to come."""
+    """The risks of waiting, from today on, and at the due date where that is still to come."""
     if not outlook.risk:
         return ()
     days = [now, *(now + later for later in WAITS)]

@@ -1,6 +1,6 @@
 """The pages that explain the service.
 
-A word that stands in `docs/glossary.md` too means the same there, to the letter; a test holds the two together.
+A term that is in `docs/glossary.md` too has the same meaning there, to the letter; a test compares the two.
 """
 
 from collections.abc import Mapping
@@ -43,7 +43,7 @@ class SettingsPage:
 
     version: str
     rows: tuple[SettingRow, ...]
-    """What somebody set first, then by name."""
+    """Settings that somebody set first, then by name."""
 
 
 def settings_page(settings: Settings) -> SettingsPage:
@@ -94,7 +94,7 @@ def _plain(value: Any) -> str:
 SCHEMAS = "#/components/schemas/"
 JSON = "application/json"
 WITHOUT = ("401", "403", "422")
-"""Answers that nearly every call may give; the head of the page tells of them once."""
+"""Answers that nearly every call may give; the head of the page explains them once."""
 
 
 @dataclass(frozen=True)
@@ -113,7 +113,7 @@ class FieldHelp:
 
 @dataclass(frozen=True)
 class Answer:
-    """What a call may answer."""
+    """Possible answer to a call."""
 
     status: str
     text: str
@@ -134,7 +134,7 @@ class CallHelp:
     """The least role that may; empty where nobody needs one."""
     fields: tuple[FieldHelp, ...]
     body: str
-    """Name of the schema of what is sent; empty where it is no JSON."""
+    """Name of the schema of the body; empty where it is no JSON."""
     body_kinds: tuple[str, ...]
     answers: tuple[Answer, ...]
 
@@ -236,7 +236,7 @@ def _kind(schema: Mapping[str, Any]) -> str:
 
 
 def _schema_of(schema: Mapping[str, Any]) -> str:
-    """The first schema that is named in another."""
+    """The first schema that another one refers to."""
     if "$ref" in schema:
         return str(schema["$ref"]).removeprefix(SCHEMAS)
     inner = [*schema.get("anyOf", ()), *schema.get("oneOf", ()), *schema.get("allOf", ()), schema.get("items", {})]
@@ -322,17 +322,17 @@ KEYS = (
 
 
 def plainly(meaning: str) -> str:
-    """Without the marks that the glossary is set with."""
+    """The meaning without the markup of the glossary."""
     return meaning.replace("\\|", "|").replace("*", "")
 
 
 COUNTS = "It counts."
-"""Of an accepted record, where others say what they are not."""
+"""Meaning of an accepted record; the other states state why they do not count."""
 
 
 @dataclass(frozen=True)
 class HelpPage:
-    """Everything the page of help shows, each as a word and what it means."""
+    """Contents of the page of help, each a term and its meaning."""
 
     when: tuple[tuple[str, str], ...]
     states: tuple[tuple[str, str], ...]
@@ -342,7 +342,7 @@ class HelpPage:
 
 
 def help_page() -> HelpPage:
-    """It is the same for everybody."""
+    """The help page, the same for everybody."""
     states = tuple((STATES[state], MEANINGS[state] or COUNTS) for state in RecordState)
     return HelpPage(WHEN, states, MEASURES, tuple((word, plainly(meaning)) for word, meaning in WORDS), KEYS)
 
@@ -352,17 +352,17 @@ router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
 
 @router.get("/help")
 def show_help(request: Request) -> HTMLResponse:
-    "What to do, and what the terms mean."
+    """Shows advice for common tasks, and the meaning of the terms."""
     return render(request, "help.html", help_page())
 
 
 @router.get("/api-reference")
 def show_reference(request: Request) -> HTMLResponse:
-    """Every call of the API."""
+    """Shows every call of the API."""
     return render(request, "reference.html", reference_page(request.app.openapi()))
 
 
 @router.get("/settings")
 def show_settings(request: Request, settings: SettingsOf) -> HTMLResponse:
-    """What is in force, and where it comes from."""
+    """Shows the settings in force, and their sources."""
     return render(request, "settings.html", settings_page(settings))

@@ -1,4 +1,4 @@
-"""What those who run the service ask: is it alive, is it ready, what are its figures."""
+"""State of the service for its operators: is it alive, is it ready, its figures."""
 
 from contextlib import suppress
 from typing import Literal
@@ -28,7 +28,7 @@ class ServiceState(BaseModel):
 
 
 class Readiness(BaseModel):
-    """What the service can do."""
+    """Readiness of the service."""
 
     status: Literal["ready", "degraded"] = Field(
         description="`ready` when it can do everything, `degraded` when it takes no uploads."

@@ -99,7 +99,7 @@ def show_fleet(request: Request, store: ReadingFleet, now: Now, view: Annotated[
 
 
 def _worst_of(store: Store, unit: UnitSummary) -> tuple[HistoryPoint, ...]:
-    """The history of the parameter that a unit's verdict hangs on."""
+    """The history of the parameter that sets a unit's verdict."""
     if unit.worst_sensor is None or unit.worst_parameter is None:
         return ()
     wanted = HistoryQuery(parameter=unit.worst_parameter, sensor=unit.worst_sensor)
@@ -108,7 +108,9 @@ def _worst_of(store: Store, unit: UnitSummary) -> tuple[HistoryPoint, ...]:
 
 @router.get("/units/{serial:path}/parameters/{name}")
 def show_parameter(request: Request, store: Reading, serial: Key, name: Key, raw: bool = False) -> HTMLResponse:
-    """The history of one parameter of all sensors of a kind; ``raw``: what the whole block did is left in."""
+    """Shows the history of one parameter of all sensors of a kind; ``raw``: with the common motion of the whole block
+    left in.
+    """
     heads = parameter_heads(History(store).latest(Units(store).key(serial)), None)
     head = next((head for head in heads if head.anchor == name), None)
     if head is None:
@@ -124,7 +126,7 @@ def show_parameter(request: Request, store: Reading, serial: Key, name: Key, raw
 def show_unit(
     request: Request, store: Reading, settings: SettingsOf, now: Now, serial: Key, raw: bool = False
 ) -> HTMLResponse:
-    """One unit; ``raw``: histories of its parameters with what the whole block did left in."""
+    """Shows one unit; ``raw``: histories of its parameters with the common motion of the whole block left in."""
     report = unit_report(store, serial, now)
     latest = History(store).latest(Units(store).key(serial))
     is_heard = any(point.parameter in TERMS for point in latest)
@@ -180,7 +182,7 @@ def show_session(
 
 @router.get("/sessions/{id}/outcome")
 def show_outcome(request: Request, store: Reading, settings: SettingsOf, id: Key) -> HTMLResponse:
-    """What became of an upload by now, as the card of the upload page."""
+    """Shows the present outcome of an upload, as the card of the upload page."""
     session = Sessions(store).get(id)
     outcome = outcome_of(session, Diagnoses(store).summary(id), retired_in_words(Register(store).get(session.unit)))
     return render(request, "outcome.html", upload_page((outcome,), settings))
@@ -202,8 +204,9 @@ def take_uploads(
     desk: JobDeskOf,
     person: PersonOf,
 ) -> HTMLResponse:
-    """The form with the verdict of each file, or what is wrong with it; 422 when a file cannot be used. Large files
-    are worked on by jobs."""
+    """Shows the form with the verdict of each file, or its problems; 422 when a file cannot be used. Large files are
+    processed by jobs.
+    """
     tables = [file for file in files if is_own_layout(where(file.content), file.filename)]
     whole = [file for file in files if file not in tables]
     long = [file for file in whole if is_long(reception.storage, file, in_force().later)]

@@ -38,7 +38,7 @@ router = APIRouter(prefix="/sessions", tags=["handing on"])
 PDF, XML = "application/pdf", "application/xml"
 """Media types of the two forms."""
 BYTES = {"schema": {"type": "string", "format": "binary"}}
-"""How OpenAPI describes a file."""
+"""OpenAPI schema of a file."""
 FILES: dict[int | str, Json] = {200: {"content": {PDF: BYTES, XML: {"schema": {"type": "string"}}}}}
 Format = Annotated[
     Literal["pdf", "dcc"], Query(description="For people, or as a Digital Calibration Certificate for programs.")
@@ -61,9 +61,9 @@ def read_certificate(
 ) -> Response:
     """The session's certificate, for people to sign or as XML.
 
-    The first request issues it under a number of its own. Asked for again, the same record gives the same number and
-    the same bytes; when what it states has changed, it has a new number and names the one it replaces.
-    A session that is not accepted has none.
+    The first request issues it under a number of its own. Requested again, the same record gives the same number and
+    the same bytes; when its contents have changed, it has a new number and names the one it replaces. A session that is
+    not accepted has none.
     """
     paper = hand_out(desk, id, format, now, who=person.signs(by.strip()) or NOT_STATED)
     return _file(paper, format)
@@ -71,9 +71,9 @@ def read_certificate(
 
 @router.get("/{id}/certificates", responses=errors(404, 422))
 def list_certificates(id: SessionId, desk: DeskOf) -> Papers:
-    """The numbers under which the session's certificate was issued, the first one first, with who signed them.
+    """The numbers under which the session's certificate was issued, the first one first, with their signers.
 
-    The last one holds. What it rests on is worked out again and compared, and `concerns` says what has changed.
+    The last one holds. Its basis is computed again and compared, and `concerns` lists the changes.
     """
     return papers_of(desk, id)
 
@@ -194,5 +194,5 @@ def read_status(serial: Serial, store: Reading, now: Now, language: LanguageOf) 
     "/{serial:path}/label.svg", responses={200: {"content": {SVG: BYTES}}, **errors(404, 422)}, response_class=Response
 )
 def draw_label(serial: Serial, labels: LabelsOf, language: LanguageOf, *, due: Due = True) -> Response:
-    """The same label as a drawing."""
+    """The unit's label as a drawing, SVG."""
     return as_file(label_svg(labels.of(serial, due=due), language), SVG, f"{serial}-label.svg")

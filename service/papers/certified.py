@@ -45,16 +45,16 @@ class SessionReport:
 
     session: StoredSession
     calibration: Calibration
-    """As computed at upload; `storage` rebuilds it from what it kept."""
+    """Calibration computed at upload; `storage` rebuilds it from the stored parts."""
     decisions: tuple[Decision, ...]
     motions: tuple[CommonMotion, ...] = ()
-    """What all sensors did together since the reference."""
+    """Motions common to all sensors since the reference."""
     states: tuple[StateChange, ...] = ()
-    """What became of it since it was received, oldest first; empty where it was accepted and remained so."""
+    """Changes of state since the session was received, oldest first; empty where it was accepted and remained so."""
     diagnosis: DiagnosisSummary | None = None
-    """In one line; None while it is still to be made."""
+    """Diagnosis in one line; None while it is still to be made."""
     failed: str = ""
-    """Why the last try to make it failed; empty where none did."""
+    """Reason why the last attempt at the diagnosis failed; empty where none did."""
 
 
 def session_report(store: Store, id: str) -> SessionReport:
@@ -75,7 +75,7 @@ def recent_history(store: Store, serial: str, most: int, wanted: HistoryQuery) -
 
 
 def traceability_of(store: Store, session: StoredSession) -> Traceability:
-    """By the certificate of its stand at the day of measurement, UTC."""
+    """The traceability by the certificate of the session's stand on the day of measurement, UTC."""
     day = session.started_at.date()
     certificate = None if session.stand is None else StandCertificates(store).on(session.stand, day)
     return traceability(session.stand, certificate, day)
@@ -97,31 +97,31 @@ class ReferenceSession:
     session: str
     """Id."""
     sha256: str
-    """Of its file."""
+    """SHA-256 of the session's file."""
     started_at: datetime
     model: Model
-    """That its calibration was made under."""
+    """Model of the calibration."""
     calibration: Calibration
-    """Without residuals and repeatability, which decide nothing."""
+    """Calibration without residuals and repeatability, which decide nothing."""
     stand: str | None
     stand_certificate: StandCertificate | None
 
     @property
     def traceability(self) -> Traceability:
-        """By the certificate of its stand at the day of measurement, UTC."""
+        """Traceability by the certificate of the stand on the day of measurement, UTC."""
         return traceability(self.stand, self.stand_certificate, self.started_at.date())
 
 
 @dataclass(frozen=True, eq=False)
 class StatedSession:
-    """What the certificate for programs states."""
+    """Contents of the certificate for programs."""
 
     report: SessionReport
     source: CalibrationSession
     """The session in the file."""
     type_name: str
     reference: ReferenceSession | None
-    """None for a reference."""
+    """Reference of the session; None for a reference."""
     said: str
     """The verdict with its reservations."""
     finding: str
@@ -131,7 +131,7 @@ class StatedSession:
     traceability: Traceability
     software: str
     temperatures: CoveredTemperatures | None
-    """That the unit's calibrations up to the session cover; None where nothing says them."""
+    """Temperatures covered by the unit's calibrations up to the session; None where none is stated."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,14 +140,14 @@ class CertifiedSession(StatedSession):
 
     unit_type: UnitType
     pair: FoundAndLeft | None
-    """Of a session as left: with the one as found."""
+    """Pair of a session as left with the session as found; None for any other."""
     diagnosis: StoredDiagnosis
     revisions: tuple[ModelRevision, ...]
     """The accepted causes in its calibration."""
     model: Model
-    """Composed of them."""
+    """Model composed of the revisions."""
     services: tuple[Service, ...]
-    """Of the unit, up to the session."""
+    """Services of the unit up to the session."""
     history: tuple[HistoryPoint, ...]
     calibration_json: bytes
     """imu-calibration/1 as it was written: the numbers behind the certificate."""
@@ -197,7 +197,7 @@ def certified_session(storage: Storage, diagnosis: StoredDiagnosis, laboratory: 
 
 
 def _revisions(store: Store, stored: StoredSession) -> tuple[ModelRevision, ...]:
-    """Those that concern it, up to the one of its calibration."""
+    """The revisions that concern the session, up to that of its calibration."""
     return tuple(r for r in Models(store).of_session(stored.id) if r.id <= stored.revision)
 
 

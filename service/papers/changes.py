@@ -59,7 +59,7 @@ def issue_certificate(storage: Storage, statement: Statement, now: datetime, *, 
 
 
 NEEDED_ROLE = Role.ENGINEER
-"""Whoever may judge may also sign."""
+"""Role needed to sign: people who may judge may also sign."""
 WRONG = "The password is wrong. Nothing was signed."
 NO_ACCOUNT = "Signing requires an account: make one and sign in with it."
 NOT_ISSUED = "There is no certificate to sign yet: ask for it, read it, then sign it."
@@ -80,7 +80,7 @@ class Signing:
 
     session: str
     number: str
-    """Of the certificate that was read."""
+    """Number of the certificate that the signer read."""
     meaning: Meaning
     login: str
     password: str

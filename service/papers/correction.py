@@ -32,7 +32,7 @@ FORMULA = (
     "a = 2 * y / (1 + sqrt(1 + 4 * quadratic * y)), the component along the sensor's axis",
     "vector = matrix * a, over the sensors in the order of the block, in block axes",
 )
-"""Of the sensor model solved for the input; step by step, as firmware computes it."""
+"""Sensor model solved for the input, step by step, as firmware computes it."""
 OVER_TEMPERATURE = (
     "dT = temperature - reference_temperature_c, the temperature in degrees Celsius held within temperature_range_c",
     "scale = sum of scale_over_temperature[k] * dT^k where it is given, bias = sum of bias_over_temperature[k] * dT^k",
@@ -45,9 +45,9 @@ ALWAYS_LEFT = (
 """Errors that no such correction can remove."""
 ONE_TEMPERATURE = "temperature: the parameters are those at the session's temperature"
 BEYOND_RANGE = "temperature outside the range of the session, hysteresis and lag"
-"""The same of a session without curves over temperature, and of one with them."""
+"""Remaining errors of temperature, for a session without curves over temperature and for one with them."""
 DIGITS = 9
-"""Of the worked example's numbers in words."""
+"""Significant digits of the worked example's numbers in words."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,9 +62,9 @@ class Corrected:
     revisions: tuple[ModelRevision, ...]
     """Accepted causes in the estimation of the parameters."""
     steps: Steps
-    """What the session's temperature is worth, where a law says it."""
+    """Effects of the session's temperature on the parameters, where a law is known."""
     temperatures: CoveredTemperatures | None
-    """That the unit's calibrations up to this one cover."""
+    """Temperatures covered by the unit's calibrations up to this one."""
 
 
 def corrected(storage: Storage, id: str) -> Corrected:
@@ -257,7 +257,7 @@ def _revision(revision: ModelRevision) -> Json:
 
 
 def _law(sensor: str, parameter: str, step: TemperatureStep) -> Json:
-    """What a parameter owes to the session's temperature: the formula does not take it off."""
+    """The effect of the session's temperature on a parameter, which the formula does not remove."""
     return {
         "sensor": sensor,
         "parameter": parameter,

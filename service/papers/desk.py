@@ -76,7 +76,7 @@ class Desk:
     rules: SigningRules
     seal: Seal | None
     language: Language = Language.ENGLISH
-    """Of documents for people; a certificate for programs is in English."""
+    """Language of documents for people; a certificate for programs is in English."""
 
     def written(self, format: str, found: CertifiedSession, issue: Issue, signed: Signed) -> bytes:
         """A certificate in one of its two forms."""
@@ -90,7 +90,7 @@ class CertificateDocument:
     """A certificate as a file."""
 
     name: str
-    """Without extension."""
+    """File name without extension."""
     content: bytes
 
 
@@ -108,7 +108,7 @@ def hand_out(desk: Desk, id: str, format: str, now: datetime, *, who: str) -> Ce
 def issued(
     desk: Desk, certified_contents: tuple[CertifiedSession, Statement], format: str, now: datetime, *, who: str
 ) -> CertificateDocument:
-    """The same for given contents."""
+    """The certificate of given contents, with a new number where they are new."""
     found, statement = certified_contents
     issue = issue_certificate(desk.storage, statement, now, who=who)
     with desk.storage.database.reading() as store:
@@ -177,7 +177,7 @@ class SignedIssue(Issue):
     """One issue of a session's certificate."""
 
     signatures: tuple[Signature, ...]
-    """Who signed it, in their order."""
+    """Signatures under the issue, in the order in which they were given."""
 
     @property
     def is_approved(self) -> bool:
@@ -191,11 +191,11 @@ class Papers:
     """Every issue of a session's certificate."""
 
     certificates: tuple[SignedIssue, ...]
-    """The first one first; the last one holds."""
+    """Issues, the first one first; the last one holds."""
     is_current: bool
-    """Whether the last one states what is stored now; another number is due if not."""
+    """Whether the last one states the currently stored data; another number is due if not."""
     concerns: tuple[str, ...]
-    """What speaks against using the last one, in words."""
+    """Reasons against using the last one, in words."""
 
 
 def papers_of(desk: Desk, id: str) -> Papers:

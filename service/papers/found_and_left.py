@@ -26,7 +26,7 @@ class JudgedChange:
 
     name: str
     deviation: str
-    """With its U."""
+    """Deviation with its U."""
     tolerance: str
     condition: Condition
 
@@ -55,7 +55,7 @@ class FoundAndLeft:
     found: StoredSession
     left: StoredSession | None
     decisions: tuple[tuple[Decision, Decision | None], ...]
-    """Of every judged parameter as found and as left, in the order of the sensors."""
+    """Decisions on every judged parameter as found and as left, in the order of the sensors."""
 
 
 def found_and_left(
@@ -79,7 +79,7 @@ def found_and_left(
     )
 
     def judged(session: StoredSession | None) -> tuple[Decision, ...]:
-        """By the current tolerances; as found at the reference's temperature where a law is known."""
+        """The decisions by the current tolerances; as found, at the reference's temperature where a law is known."""
         if session is None or reference is None:
             return ()
         step = steps[session.id] if session is found else NO_STEPS

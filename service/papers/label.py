@@ -27,16 +27,18 @@ class Label:
     serial: str
     unit_type: str
     use: str
-    """What must be said before anything else; empty where the unit is plainly usable, or the state was not wanted."""
+    """Restriction of use, shown before anything else; empty where the unit is plainly usable, or the state was not
+    wanted.
+    """
     is_usable: bool
     due: str
-    """Empty where it was not wanted, or where something else must be done first."""
+    """Due date; empty where it was not wanted, or where something else must be done first."""
     why: str
-    """The rule that set the date, what to do, or what speaks against the use; empty where the label states none."""
+    """The rule that set the date, the action, or the reason against the use; empty where the label states none."""
     stated: str
     """The day on which it was printed: everything else is that of this day."""
     address: str
-    """Of the unit's page."""
+    """Address of the unit's page."""
     code: str
     """The address as a QR code, SVG."""
     simulated: bool
@@ -88,5 +90,5 @@ def label_pdf(label: Label, now: datetime, language: Language = Language.ENGLISH
 
 
 def label_svg(label: Label, language: Language = Language.ENGLISH) -> bytes:
-    """The same as a drawing; letters are outlines, so that it needs no fonts."""
+    """The label as a drawing; letters are outlines, so that it needs no fonts."""
     return typeset_svg(TEMPLATE, label, language)

@@ -1,4 +1,4 @@
-"""What papers name besides the measurement, and the names under them."""
+"""Statements of papers besides the measurement, and the signatures under them."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -37,15 +37,15 @@ class TraceState(StrEnum):
 @answer
 @dataclass(frozen=True)
 class Traceability:
-    """What a session's numbers hang on."""
+    """Traceability of a session's results to the SI."""
 
     state: TraceState
     """`traceable`; `interrupted`: the stand's certificate had expired at the day of measurement; `not-stated`: none
     that held is on record; `no-stand`."""
     text: str
-    """In one or two sentences, as on the certificate."""
+    """Statement in one or two sentences, as on the certificate."""
     certificate: StandCertificate | None
-    """Of the stand, the latest that was issued by the day of measurement."""
+    """Certificate of the stand, the latest that was issued by the day of measurement."""
 
     @property
     def has_expired(self) -> bool:
@@ -67,7 +67,7 @@ class Issue:
     issued_at: datetime
     """UTC."""
     who: str
-    """Who issued it."""
+    """Person who issued it."""
     replaces: str | None
     """Number of the certificate that it takes the place of."""
     content_hash: str
@@ -89,11 +89,11 @@ class Signature:
     certificate: str
     """Number of the certificate."""
     meaning: Meaning
-    """What it says."""
+    """Meaning of the signature."""
     login: str
     """Account that signed, with its password."""
     name: str
-    """As it is printed."""
+    """Name of the signer as it is printed."""
     signed_at: datetime
     """UTC."""
     content_hash: str
@@ -106,7 +106,7 @@ class Signed:
 
     signatures: tuple[Signature, ...] = ()
     sealed_by: str = ""
-    """Empty without a seal."""
+    """Owner of the seal; empty without a seal."""
 
 
 UNSIGNED = Signed()
@@ -131,13 +131,13 @@ class RestingCertificate:
     """An issued certificate whose numbers rest on a stand."""
 
     number: str
-    """Of the certificate."""
+    """Number of the certificate."""
     unit: str
     """Serial number."""
     session: str
     """Id of the session."""
     started_at: datetime
-    """When it was measured, UTC."""
+    """Start of the measurement, UTC."""
     issued_at: datetime
     """UTC."""
     is_measured_there: bool

@@ -60,7 +60,7 @@ class CorrectionDocument(BaseModel):
 
 
 class NewCustomer(Body):
-    """For whom a unit is calibrated, and who says so."""
+    """Customer of a unit, and the person who states it."""
 
     name: Text = Field(default="", description="Empty where it is not stated.", examples=["Aero Works Ltd"])
     address: LongText = Field(default="", description="Where they can be reached.", examples=["1 Hangar Road, Derby"])

@@ -18,10 +18,10 @@ WITHOUT = "A key for the electronic seal is set, but a library is missing: {faul
 
 @dataclass(frozen=True)
 class Seal:
-    """What a laboratory seals with."""
+    """The laboratory's seal."""
 
     subject: str
-    """Of its certificate."""
+    """Subject of its certificate."""
     require_valid: Callable[[datetime], None]
     """ConflictError outside of the time for which the certificate was made."""
     pdf: Callable[[bytes], bytes]

@@ -18,9 +18,9 @@ from service.papers.typeset import PALETTE
 from service.sessions.words.conditions import CONDITIONS, REFERENCE
 
 OPTIONS = {"constant_memory": True, "strings_to_formulas": False, "strings_to_urls": False}
-"""Rows go to disk as they come, and no text becomes a formula or a link by what it looks like."""
+"""Rows go to disk as they come, and no text becomes a formula or a link by its appearance."""
 FORMULA = re.compile(r"^[=+\-@\t\r]")
-"""How a text begins that a spreadsheet would work out once it is edited."""
+"""Beginning of a text that a spreadsheet would evaluate as a formula once it is edited."""
 LONGEST_TEXT = 32_767
 """Characters that a cell holds."""
 
@@ -28,7 +28,7 @@ Cell = str | float | int | bool | datetime | None
 
 
 class CellKind(Enum):
-    """How a column is written: the format of its numbers, and whether verdicts stand in it."""
+    """Format of a column: that of its numbers, and whether verdicts stand in it."""
 
     TEXT = "@"
     VERDICT = "General;General"
@@ -48,7 +48,7 @@ class Column:
     kind: CellKind = CellKind.TEXT
     width: float = 14.0
     is_named: bool = False
-    """Whether people name what stands in it: that is written as they did, in every language."""
+    """Whether its contents are names given by people: they are written unchanged, in every language."""
 
 
 def naive(at: datetime) -> datetime:
@@ -112,8 +112,9 @@ class Workbook:
                 sheet.write_number(*place, cell, look)
 
     def _colour(self, sheet: Worksheet, columns: Sequence[Column], last: int) -> None:
-        """Verdicts in their colours, as rules of the sheet: they follow when somebody sorts or edits. No word of one
-        begins as another's does, and what is added to it, a reservation, changes no colour."""
+        """Colours verdicts by rules of the sheet: they follow when somebody sorts or edits. No word of a verdict begins
+        like another, and an added reservation changes no colour.
+        """
         for place, column in enumerate(columns):
             if column.kind is CellKind.VERDICT and last:
                 for word, tone in self._tones.items():

@@ -26,7 +26,7 @@ TEMPLATE = "status.typ"
 MOST_PARAMETERS = 10
 MOST_RESERVATIONS = 5
 TONES = {Use.YES: "pass", Use.RESERVED: "conditional-pass", Use.NO: "fail", Use.PENDING: "undecidable"}
-"""Colours of what a unit may be used for."""
+"""Colours of the permitted use."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class StatusRow:
 
     change: JudgedChange
     used: str
-    """Of the tolerance, U included; empty where it is not observed."""
+    """Used share of the tolerance, U included; empty where it is not observed."""
 
 
 @dataclass(frozen=True)
@@ -45,12 +45,12 @@ class StatusPaper:
     unit: str
     day: str
     key: str
-    """Of the colour of the use."""
+    """Key of the colour of the use."""
     use: str
     why: str
     condition: Condition
     next: str
-    """When its next calibration is due; empty where something else must be done first."""
+    """Due date of its next calibration; empty where something else must be done first."""
     facts: tuple[Fact, ...]
     reservations: tuple[str, ...]
     more: int
@@ -88,7 +88,7 @@ def status_paper(store: Store, serial: str, now: datetime) -> StatusPaper:
 
 
 def closest(decisions: tuple[Decision, ...]) -> tuple[Decision, ...]:
-    """Those that matter, the worst first, then by least margin to tolerance."""
+    """The decisions that matter, the worst first, then by least margin to tolerance."""
     ranked = sorted(decisions, key=lambda d: (-d.verdict.severity, d.margin if d.margin is not None else 0.0))
     return tuple(ranked[:MOST_PARAMETERS])
 

@@ -77,15 +77,15 @@ def _issue(row: CertificateRow) -> Issue:
 
 
 class Signatures(Queries):
-    """By the certificate's number or its session; a row is written once."""
+    """Signatures by the certificate's number or its session; a row is written once."""
 
     def of_session(self, id: str) -> tuple[Signature, ...]:
-        """Under every issue of a session's certificate, the first one first."""
+        """The signatures under every issue of a session's certificate, the first one first."""
         query = _signatures().where(CertificateRow.session_id == id).order_by(SignatureRow.id)
         return tuple(_signature(*row) for row in self._session.execute(query))
 
     def of_certificate(self, number: str) -> tuple[Signature, ...]:
-        """Under one issue."""
+        """The signatures under one issue."""
         query = _signatures().where(CertificateRow.number == number).order_by(SignatureRow.id)
         return tuple(_signature(*row) for row in self._session.execute(query))
 

@@ -1,4 +1,4 @@
-"""From a frozen record to a PDF by typst; the record is passed as data, never as part of the source."""
+"""A frozen record → a PDF by typst; the record is passed as data, never as part of the source."""
 
 import json
 import re

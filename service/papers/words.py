@@ -33,7 +33,7 @@ def missing_facts(laboratory: Laboratory, customer: Customer, *, dated: bool) ->
 
 
 def draft_in_words(missing: tuple[str, ...]) -> str:
-    """That the paper is a draft, and why; empty where nothing is missing."""
+    """The statement that the paper is a draft, and why; empty where nothing is missing."""
     if not missing:
         return ""
     names = (
@@ -96,7 +96,7 @@ NO_STAND = "Traceability is not stated: no stand was used, and gravity at the si
 
 
 def traceability(stand: str | None, certificate: StandCertificate | None, day: date) -> Traceability:
-    """Of a session measured on a day; the certificate is the latest of its stand issued by then."""
+    """The traceability of a session measured on a day, by the latest certificate of its stand issued by then."""
     if stand is None:
         return Traceability(TraceState.NO_STAND, NO_STAND, None)
     if certificate is None:
@@ -129,7 +129,7 @@ BY = "The standard uncertainty of measurement has been determined in accordance 
 
 
 def uncertainty_in_words(calibration: Calibration, k: float) -> str:
-    """With the coverage factor of the decisions."""
+    """The statement of uncertainty with the coverage factor of the decisions."""
     percent = number(100 * (2.0 * chance(k, None) - 1.0), 0)
     if noise_is_estimated(calibration):
         parts = {"coverage": say(STUDENT, k=coverage_in_words(calibration, k), percent=percent), "source": BY}

@@ -9,7 +9,7 @@ from service.web.headers import API
 
 UNIT, SESSION = f"{API}/units/{{serial:path}}", f"{API}/sessions/{{id}}"
 MARKED = "\n".join(f"POST /sessions/{{id}}/{word}\nPUT {SESSION}/{word}" for word in MARKS)
-"""What is said of a session with yes or no."""
+"""Routes that set or remove the yes-or-no marks of a session."""
 Route = tuple[str, str]
 """Method and path as in the route table."""
 
@@ -25,7 +25,7 @@ POST /sign-out
 GET /oidc/start
 GET /oidc/callback
 """
-"""Open without signing in."""
+"""Routes open without signing in."""
 
 VIEWER = f"""
 GET /
@@ -236,7 +236,7 @@ GET {API}/webhooks/{{id}}/deliveries
 DELETE {API}/webhooks/{{id}}
 """
 METRICS: Route = ("GET", "/metrics")
-"""Also open to a token of its own."""
+"""Route of the metrics, also open to a token of its own."""
 
 
 def _routes(text: str) -> Iterable[Route]:

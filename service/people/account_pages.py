@@ -42,7 +42,7 @@ class SignInPage:
     next: str
     """Address of this service to which it leads."""
     wrong: str
-    """The last error; empty the first time."""
+    """Error of the last attempt; empty the first time."""
     provider: str
     """Name of the sign-in provider; empty where none is configured."""
 
@@ -53,7 +53,7 @@ class LinkPage:
 
     secret: str
     account: Account | None
-    """None where the first account is made."""
+    """Account of the link; None where the first account is made."""
     shortest: int
     """Characters of a password."""
 
@@ -73,7 +73,7 @@ class AccountPage:
 
     tokens: tuple[TokenLine, ...]
     secret: str
-    """Of the token that was just made; empty otherwise."""
+    """Secret of the token that was just made; empty otherwise."""
     roles: tuple[Role, ...]
 
 

@@ -36,7 +36,7 @@ class AuditView:
     """A part of the trail."""
 
     lines: tuple[tuple[AuditLine, str], ...]
-    """With its details in words."""
+    """Lines with their details in words."""
     check: AuditCheck | None
     subject: str
     before: int | None
@@ -116,7 +116,7 @@ def show_audit(
     subject: Annotated[Sought, Query()] = "",
     check: bool = False,
 ) -> HTMLResponse:
-    """Who did what, the newest first."""
+    """Shows the audit trail, the newest first."""
     wanted = subject.strip()
     lines = Audit(store).page(AUDIT_LINES, before, wanted or None)
     checked = Audit(store).check() if check else None

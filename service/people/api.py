@@ -1,4 +1,4 @@
-"""Who somebody is, accounts, tokens and the audit trail, over HTTP."""
+"""The sender's identity, accounts, tokens and the audit trail, over HTTP."""
 
 from dataclasses import dataclass
 from datetime import timedelta
@@ -31,7 +31,7 @@ Login = Annotated[Sought, Path(max_length=60, description="The account's login."
 
 
 class MeSchema(BaseModel):
-    """Who sent the request."""
+    """Sender of the request."""
 
     model_config = ConfigDict(from_attributes=True)
 
@@ -48,7 +48,7 @@ class AccountList(BaseModel):
 
 
 class NewAccount(Body, json_schema_extra={"example": {"login": "k.ito", "name": "K. Ito", "role": "crew"}}):
-    """Somebody who is to sign in."""
+    """A new account."""
 
     login: Name = Field(
         description="Letters a to z, digits and . _ @ -; at most 60. Capitals are made small.",
@@ -59,7 +59,7 @@ class NewAccount(Body, json_schema_extra={"example": {"login": "k.ito", "name": 
 
 
 class AccountChanges(Body, json_schema_extra={"example": {"role": "engineer"}}):
-    """What is to be otherwise."""
+    """Changes of an account."""
 
     name: Text | None = Field(default=None, description="As papers name the person.")
     role: Role | None = Field(default=None, description="What the person may do.")
@@ -92,7 +92,7 @@ class MadeToken(Token):
     """A new token with its secret."""
 
     secret: str
-    """What the program shows: `Authorization: Bearer …`. It is not shown again."""
+    """Secret that the program shows: `Authorization: Bearer …`. It is not shown again."""
 
 
 class AuditPage(BaseModel):
@@ -108,13 +108,13 @@ NO_ACCOUNT = "A token acts for an account: make the first account, and sign in w
 
 @router.get("/me", responses=errors())
 def read_me(person: PersonOf) -> MeSchema:
-    """Who sent this request, and what they may do."""
+    """The sender of this request, and their role."""
     return MeSchema.model_validate(person)
 
 
 @router.get("/accounts", responses=errors())
 def list_accounts(store: Reading) -> AccountList:
-    """Everybody who may sign in, or once might."""
+    """The accounts of everybody who may sign in, or once might."""
     return AccountList(accounts=Accounts(store).every())
 
 

@@ -208,7 +208,7 @@ def _key(*parts: str) -> str:
 
 
 def _reset(storage: Storage, limits: tuple[_Limit, ...]) -> None:
-    """After a right password: resets own counts, and subtracts this attempt from shared ones."""
+    """Resets own counts after a right password, and subtracts this attempt from shared ones."""
     with storage.database.writing() as store:
         for limit in limits:
             if limit.is_own:
@@ -263,7 +263,7 @@ class LinkForm:
     """The form behind a sign-in link."""
 
     login: str
-    """For the first account only."""
+    """Login, for the first account only."""
     name: str
     password: str
 
@@ -322,7 +322,7 @@ def _first(store: Store, chosen: LinkForm, now: datetime) -> str:
 
 
 LONGEST = timedelta(days=366)
-"""Longest lifetime of a token: what is forgotten should end by itself."""
+"""Longest lifetime of a token: a forgotten one should end by itself."""
 
 
 OUTLIVES = "A token cannot make tokens or sign-in links, which would outlive it: sign in with a browser."

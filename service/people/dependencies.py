@@ -22,7 +22,7 @@ def _storage(request: Request, person: PersonOf) -> Storage:
 
 
 def _acting(storage: Storage, person: Person) -> Storage:
-    """The same stores; the audit trail names the person."""
+    """The stores acting for a person, whom the audit trail names."""
     return replace(storage, database=storage.database.acting(person.account))
 
 

@@ -47,7 +47,7 @@ class Journey:
 
     @property
     def verifier(self) -> str:
-        """Sent with the code: nobody else can exchange it (RFC 7636)."""
+        """Secret sent with the code: nobody else can exchange it (RFC 7636)."""
         return self._part(b"verifier")
 
     @property
@@ -90,7 +90,7 @@ class Callback:
     code: str
     state: str
     issuer: str | None
-    """Of newer providers (RFC 9207)."""
+    """Issuer, from newer providers (RFC 9207)."""
 
 
 class Provider(Protocol):
@@ -112,7 +112,7 @@ class ProviderSettings:
     issuer: str
     client: str
     secret: str
-    """Empty for a public client."""
+    """Secret of the client; empty for a public client."""
     role_claim: str
     hosts: frozenset[str]
     """Allowed in its metadata."""
@@ -120,14 +120,14 @@ class ProviderSettings:
 
 @dataclass(frozen=True)
 class Joining:
-    """Who may join from the provider, and in which role."""
+    """Rules by which people join from the provider, and their roles."""
 
     everybody: Role | None
     """Role of everybody at the provider; None admits only people with a role or an existing account."""
     by_claim: bool
     """Whether the provider decides the role, at every sign-in."""
     roles: Mapping[str, Role]
-    """By value of the claim."""
+    """Roles by value of the claim."""
 
     def role_of(self, groups: tuple[str, ...]) -> Role | None:
         """The highest role of a person's groups."""
@@ -137,7 +137,7 @@ class Joining:
 
 
 def joining_of(settings: Settings) -> Joining:
-    """From the settings."""
+    """The rules of joining in the settings."""
     roles = {value: Role(role) for value, role in settings.oidc_roles}
     return Joining(roles.get(EVERYBODY), bool(settings.oidc_role_claim), roles)
 

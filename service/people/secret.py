@@ -68,7 +68,7 @@ def is_password(stored: str | None, password: str) -> bool:
 
 
 def fault_of(password: str) -> str | None:
-    """What is wrong with a new password; None where nothing is."""
+    """The fault of a new password; None where there is none."""
     if len(password) < SHORTEST:
         return say(
             "is shorter than {shortest} characters; a few words in a row are easy to remember and hard to guess",

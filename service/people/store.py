@@ -107,7 +107,7 @@ class Attempts(Queries):
 
 
 class Identities(Queries):
-    """By issuer and subject, together."""
+    """Identities by issuer and subject together."""
 
     def account(self, issuer: str, subject: str) -> Account | None:
         """The account of an identity."""
@@ -121,7 +121,7 @@ class Identities(Queries):
 
 
 class SignIns(Queries):
-    """By the hash of the browser's secret."""
+    """Signed-in browsers by the hash of their secret."""
 
     def add(self, account: Account, hashed: str, now: datetime, until: datetime) -> None:
         """Adds a signed-in browser; removes expired ones."""

@@ -1,4 +1,4 @@
-"""Plans: what a session would tell before it is measured."""
+"""Plans: expected results of a session before it is measured."""
 
 from typing import Annotated, Literal
 
@@ -17,7 +17,7 @@ router = APIRouter(prefix="/plan", tags=["planning"])
 
 
 class PlanDocument(BaseModel):
-    """imu-plan/1: what a session would tell, SI; elevations in degrees."""
+    """imu-plan/1: expected results of a session, SI; elevations in degrees."""
 
     model_config = {"extra": "allow"}
 
@@ -33,7 +33,7 @@ class Setting(BaseModel):
 
 
 class KnownSoFar(BaseModel):
-    """How well one parameter is known; total, one sigma, SI, relative for scale; null where it is not observed."""
+    """Uncertainty of one parameter: total, one sigma, SI, relative for scale; null where it is not observed."""
 
     sensor: str = Field(description="Its name.")
     parameter: str = Field(description="`scale`, `bias`, `quadratic` or `axis`.")
@@ -42,7 +42,7 @@ class KnownSoFar(BaseModel):
 
 
 class MissingDocument(BaseModel):
-    """imu-missing/1: what a session that is being measured still lacks."""
+    """imu-missing/1: the missing positions of a session that is being measured."""
 
     format: str = Field(description="`imu-missing/1`.")
     done: int = Field(description="Positions so far.")
@@ -75,7 +75,7 @@ Runs = Annotated[Literal["both", "direct"], Query(description="`direct` where th
 
 @router.post("/missing", responses=errors(400, 413, 422), openapi_extra=REQUEST_BODY)
 def read_missing(file: FileOf, positions: Positions = None, runs: Runs = "both") -> MissingDocument:
-    """Which positions a session still lacks while it is measured. Nothing is stored."""
+    """The positions that a session under measurement still lacks. Nothing is stored."""
     found = missing_of(file, positions, both_runs=runs == "both")
     return MissingDocument.model_validate({**found.to_dict(), "said": missing_in_words(found)})
 

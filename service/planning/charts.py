@@ -19,11 +19,11 @@ HEIGHT = 150
 SERIES = ("total", "repeatability", "tolerance")
 COLOURS = ["var(--accent)", "var(--second)", "var(--tolerance)"]
 DASHES = [[1, 0], [4, 3], [5, 3]]
-"""What the lines of a panel show, in their colours and dashes: they differ in black and white too."""
+"""Colours and dashes of the lines of a panel; the dashes tell them apart in black and white too."""
 
 
 def plan_charts(plan: Plan, kind: str) -> tuple[ChartSet, ChartSet]:
-    """Over N at the plan's elevation, and over the elevation at the plan's N."""
+    """Charts over N at the plan's elevation, and over the elevation at the plan's N."""
     degrees = np.degrees(plan.over_elevation.at)
     by_number = _parameters(plan, kind, plan.over_positions, plan.over_positions.at.astype(float), plan.positions)
     by_angle = _parameters(plan, kind, plan.over_elevation, degrees, float(np.degrees(plan.elevation)))
@@ -101,7 +101,7 @@ def _spec(across: str) -> Json:
 READINESS_HEIGHT = 140
 """Pixels: six panels fit on a screen."""
 MINUTE = 60.0
-"""s."""
+"""Seconds in a minute."""
 
 
 def readiness_charts(found: Readiness, kinds: dict[str, str]) -> ChartSet | None:

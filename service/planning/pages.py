@@ -105,7 +105,7 @@ class PlanPage:
     unseen: tuple[BlindCauses, ...]
     optimal: tuple[PlanFact, ...]
     orientations: tuple[tuple[str, ...], ...]
-    """Without a stand: directions of up that identify everything; none for gyros."""
+    """Directions of up that identify everything without a stand; none for gyros."""
     headings: tuple[str, ...]
 
 
@@ -249,6 +249,6 @@ router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
 
 @router.get("/plan")
 def show_plan(request: Request, question: Annotated[PlanQuestion, Query()], storage: StorageOf) -> HTMLResponse:
-    """What a session would tell before it is measured."""
+    """Shows the uncertainties to be expected of a session before it is measured."""
     completed_question, result = plan(storage, question)
     return render(request, "plan.html", plan_page(completed_question, result, plannable_types(storage)))

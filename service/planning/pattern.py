@@ -23,11 +23,11 @@ from service.types.records import UnitType
 from service.types.store import UnitTypes
 
 MOST_SENSORS = 48
-"""As many as `imu-health simulate` makes; larger blocks are not planned."""
+"""Most sensors of a planned block, as many as `imu-health simulate` makes."""
 
 
 def why_not(unit_type: UnitType) -> tuple[Problem, ...]:
-    """Why units of a type cannot be planned on a two-axis stand."""
+    """The reasons why units of a type cannot be planned on a two-axis stand; empty where they can."""
     if unit_type.gyro_tolerances is not None or unit_type.block not in ("accelerometer", "gyroscope"):
         return (
             problem_at(
@@ -74,7 +74,7 @@ MOST_TYPES = 500
 POSITIONS = 12
 """A run, of the simulated pattern: every 30°."""
 SEED = 1
-"""Of its noise: the same pattern every time."""
+"""Seed of the pattern's noise: the same pattern every time."""
 NOISE = 1e-5
 """m/s² or rad/s, one sigma: one µg, so that it looks measured."""
 

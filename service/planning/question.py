@@ -38,7 +38,7 @@ def blank(value: object) -> object:
 
 
 LEAST, LARGEST = 1e-9, 1e9
-"""Of any amount in practical units: far beyond any instrument, and far from the limits of floating point."""
+"""Bounds of every amount in practical units: far beyond any instrument, and far from the limits of floating point."""
 
 
 def _zero_below_least(value: float) -> float:
@@ -153,7 +153,7 @@ class PlanQuestion(BaseModel):
 
 
 MINUTE = 60.0
-"""s."""
+"""Seconds in a minute."""
 
 
 class ReadyQuestion(BaseModel):
@@ -174,7 +174,9 @@ class ReadyQuestion(BaseModel):
     )
 
     def question(self, kind: str, tolerances: Mapping[tuple[str, str], float], usual: float | None) -> Question:
-        """In SI, for a record whose leading sensors are of a kind; ``usual``: usual duration of such sessions, s."""
+        """The question in SI, for a record whose leading sensors are of a kind; ``usual``: usual duration of such
+        sessions, s.
+        """
         overrides = {
             name: getattr(self, name) / MEASURES[kind, name].factor for name in ("bias", "scale") if getattr(self, name)
         }

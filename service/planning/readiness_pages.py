@@ -1,4 +1,4 @@
-"""The pages before and during a measurement: ready or not, and what is still missing."""
+"""The pages before and during a measurement: ready or not, and the missing positions."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -42,19 +42,19 @@ CONDITIONS = {
 }
 UNSEEN = "not observed"
 MOST_ROWS = 20
-"""Of the table of changes: every fifth mean is enough for reading."""
+"""Most rows in the table of changes: every fifth mean is enough for reading."""
 
 
 @dataclass(frozen=True)
 class Drift:
-    """What one sensor, or the thermometer, is going to do."""
+    """Expected drift of one sensor or of the thermometer."""
 
     name: str
     expected: str
     bound: str
     allowed: str
     share: str
-    """Of the tolerances, bias and scale factor."""
+    """Shares of the tolerances of bias and scale factor."""
 
 
 @dataclass(frozen=True)
@@ -140,7 +140,7 @@ def _changes(found: Readiness, kinds: dict[str, str]) -> tuple[tuple[str, ...], 
 
 @dataclass(frozen=True)
 class MissingPage:
-    """Everything the page of what is missing shows; before a file was sent only its form."""
+    """Contents of the page of missing positions; before a file was sent only its form."""
 
     positions: int | None
     runs: str
@@ -187,7 +187,7 @@ router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
 
 
 class Programme(BaseModel):
-    """What the form of missing positions says."""
+    """Fields of the form for missing positions."""
 
     positions: Annotated[Annotated[int, Field(ge=2, le=360)] | None, BeforeValidator(blank)] = None
     runs: Annotated[str, Field(pattern="^(both|direct)$")] = "both"
@@ -211,7 +211,7 @@ async def _brought(arriving: ArrivingOf) -> Brought:
 
 
 BroughtOf = Annotated[Brought, Depends(_brought)]
-"""What the form sent."""
+"""File and fields that the form sent."""
 
 
 @router.get("/ready")
@@ -238,7 +238,7 @@ def show_missing_form(request: Request) -> HTMLResponse:
 
 @router.post("/missing")
 def show_missing(request: Request, brought: BroughtOf) -> HTMLResponse:
-    """What is still to be measured, and how well everything is known so far."""
+    """Shows the positions still to be measured and the uncertainties so far."""
     asked = _read(Programme, brought)
     found = missing_of(brought.file, asked.positions, both_runs=asked.runs == "both")
     return render(request, "missing.html", missing_page(asked.positions, asked.runs, found))

@@ -1,4 +1,4 @@
-"""A session planned, a unit found ready, what a session still lacks; nothing is stored."""
+"""Plans of sessions, readiness of units, and missing positions of a session; nothing is stored."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -48,7 +48,9 @@ def plan(storage: Storage, question: PlanQuestion) -> tuple[PlanQuestion, Plan]:
 
 @lru_cache(maxsize=64)
 def _of_cone(question: PlanQuestion) -> Plan:
-    """For sensors on a cone: the question alone decides it, and the empty one of the page is everybody's first."""
+    """The plan for sensors on a cone: the question alone decides it, and the empty one of the page is everybody's
+    first.
+    """
     return _planned(question, question.cone(), question.kind)
 
 
@@ -68,7 +70,9 @@ def plannable_types(storage: Storage) -> tuple[str, ...]:
 
 
 def missing_of(file: SentFile, positions: int | None, *, both_runs: bool) -> Missing:
-    """What is to come; RefusedError with every problem where the file cannot be read so far."""
+    """The positions and uncertainties still to come; RefusedError with every problem where the file cannot be read so
+    far.
+    """
     content = where(file.content) if file.mapping is None else wrapped(file.mapping, held(file.content))
     try:
         with in_turn(content):
@@ -78,18 +82,18 @@ def missing_of(file: SentFile, positions: int | None, *, both_runs: bool) -> Mis
 
 
 SEED = 1
-"""Of the draws: the same file has the same answer."""
+"""Seed of the draws: the same file has the same answer."""
 
 
 @dataclass(frozen=True)
 class Asked:
-    """The answer, and what it was judged by."""
+    """The answer, and the basis of its judgement."""
 
     found: Readiness
     kind: str
-    """Of the leading sensors."""
+    """Kind of the leading sensors."""
     unit_type: str | None
-    """Whose tolerances were taken; None: the defaults."""
+    """Unit type whose tolerances were taken; None: the defaults."""
     is_usual: bool
     """Whether the duration was nobody's, but the usual one."""
 
@@ -105,7 +109,7 @@ def readiness_of(storage: Storage, file: SentFile, asked: ReadyQuestion) -> Aske
 
 
 def judged_by_defaults(session: CalibrationSession, asked: ReadyQuestion) -> Asked:
-    """The same without a store, as of a unit that nobody knows."""
+    """The answer without a store, by the default tolerances, as for an unknown unit."""
     return _asked(session, asked, None, defaults(), None)
 
 
@@ -129,7 +133,7 @@ def _answered(storage: Storage, session: CalibrationSession, asked: ReadyQuestio
 
 
 def usual_length(storage: Storage, serial: str, unit_type: str) -> float | None:
-    """s that the last session of the unit, or else of its type, took; None where none says so."""
+    """Duration of the last session of the unit, or else of its type, s; None where none states it."""
     try:
         last = earlier(storage, serial, unit_type)
     except (NotFoundError, SessionError):

@@ -21,7 +21,7 @@ MOST = 12
 
 
 def missing_in_words(found: Missing) -> tuple[str, ...]:
-    """A sentence on progress, then one a run or a line a direction, then what is open until then."""
+    """A sentence on progress, then one a run or a line a direction, then the parameters that are open until then."""
     if found.is_complete:
         return (say("Complete: {done} positions, and every parameter is observed.", done=found.done),)
     done = found.done
@@ -138,7 +138,7 @@ def headline(plan: Plan) -> str:
 
 
 MINUTE = 60.0
-"""s."""
+"""Seconds in a minute."""
 FEW = 3
 """Sensors that are named; the others are counted."""
 
@@ -279,7 +279,7 @@ SHORT: dict[DisturbanceKind, Callable[[Disturbance], str]] = {
 
 
 def disturbance_in_words(event: Disturbance, kind: str) -> str:
-    """What happened, when, to whom, and what to do."""
+    """Kind, time, sensors and consequence of a disturbance, with advice."""
     sensors, size = named(event.sensors), amount(kind, event.size)
     consequence = "; only the record after it is judged." if event.passed else ". Do not touch it, and record again."
     parts = {"size": size, "start": clock(event.start), "stop": clock(event.stop), "consequence": consequence}
@@ -316,7 +316,7 @@ def disturbance_in_words(event: Disturbance, kind: str) -> str:
 
 
 def fault_in_words(fault: RecordFault) -> str:
-    """What is wrong with the record, and what to do."""
+    """The fault of a record, with advice."""
     sensors = named(fault.sensors)
     match fault.kind:
         case FaultKind.NO_TIME:

@@ -6,12 +6,12 @@ from enum import StrEnum
 
 
 class WorkKind(StrEnum):
-    """What is to be done, under the same names as in `FailedKind`."""
+    """Kinds of queued work, under the same names as in `FailedKind`."""
 
     DIAGNOSIS = "diagnosis"
-    """Of a session, by its identifier."""
+    """Diagnosis of a session, by its identifier."""
     OUTLOOK = "outlook"
-    """Of a unit, by its serial number."""
+    """Outlook of a unit, by its serial number."""
     DERIVATION = "derivation"
     """Verdicts of a unit after a change of its records: only failures are stored, by serial number."""
     GROUP = "group"
@@ -25,7 +25,7 @@ class WorkKind(StrEnum):
     UPLOAD = "upload"
     """A long file that was received completely, by the number of its job."""
     MESSAGE = "message"
-    """To a webhook, by the number of its delivery."""
+    """Message to a webhook, by the number of its delivery."""
 
 
 class WorkState(StrEnum):

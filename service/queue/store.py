@@ -38,7 +38,7 @@ class PendingWork(Queries):
     """Work of all kinds that has not failed."""
 
     def counts(self) -> dict[WorkKind, int]:
-        """How much of each kind is to be done."""
+        """Number of pieces of work to be done, by kind."""
         counted = select(WorkRow.kind, func.count(func.distinct(WorkRow.key))).where(WorkRow.failed.is_(None))
         return {WorkKind(kind): count for kind, count in self._session.execute(counted.group_by(WorkRow.kind))}
 
@@ -55,7 +55,7 @@ class WorkQueue(Queries):
         self.insert_all_once(WorkRow, [self._new(key, now) for key in keys])
 
     def enqueue_again(self, key: str, now: datetime) -> None:
-        """Requests work; what is in progress is repeated, and failed work is attempted at once."""
+        """Requests work; work in progress is repeated, and failed work is attempted at once."""
         new = self._upsert(WorkRow).values(**self._new(key, now))
         reset = {
             name: case((_HAS_FAILED, value), else_=getattr(WorkRow, name)) for name, value in RETRY_AT_ONCE.items()

@@ -1,4 +1,4 @@
-"""What is still being worked out, in words."""
+"""Pending background work in words."""
 
 from collections.abc import Iterator, Mapping
 

@@ -1,1 +1,1 @@
-"""What becomes of records, and everything that is derived of them again."""
+"""Changes of records, and everything derived from records made again."""

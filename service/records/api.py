@@ -1,4 +1,4 @@
-"""Over HTTP: states of records; what happened to a unit: services, notes, and how it was found and left."""
+"""States of records, and events of a unit over HTTP: services, notes, and the unit as found and as left."""
 
 from fastapi import APIRouter, Request
 from pydantic import BaseModel, Field
@@ -42,7 +42,7 @@ class StateList(BaseModel):
 
 
 class Correcting(Body, json_schema_extra={"example": {"by": "K. Ito"}}):
-    """Who is to have a questioned session's file corrected."""
+    """Request to have a questioned session's file corrected."""
 
     by: Name = Field(description="Who says so.")
 
@@ -51,7 +51,7 @@ class Superseding(
     Body,
     json_schema_extra={"example": {"by": "K. Ito", "why": "alpha mistyped", "superseded_by": "3f9a0c5be1d24786aa10"}},
 ):
-    """Which session supersedes another, who says so and why."""
+    """Session that supersedes another, with the person and the reason."""
 
     by: Name = Field(description="Who says so.")
     why: Reason = Field(description="Why; what was wrong.")
@@ -76,7 +76,7 @@ class NewReference(
 
 
 class DerivationSchema(BaseModel):
-    """How far what is known of a unit follows its records."""
+    """Progress of the judgements of a unit after a change of its records."""
 
     unit: str = Field(description="Serial number of the unit.")
     sessions: int = Field(description="Its accepted sessions.")
@@ -85,12 +85,12 @@ class DerivationSchema(BaseModel):
 
 router = APIRouter()
 REFUSALS = errors(400, 404, 409, 422)
-"""What may come instead of the changed record."""
+"""Answers in place of the changed record."""
 
 
 @router.get("/sessions/{id}/states", responses=errors(404, 422), tags=["sessions"])
 def read_states(id: SessionId, store: Reading) -> StateList:
-    """What became of a session since it was received: by whom, when and why."""
+    """Changes of state of a session since it was received: by whom, when and why."""
     session = Sessions(store).get(id)
     lines = States(store).of(RecordKind.SESSION, id)
     return StateList(session=id, state=session.state, states=lines)
@@ -151,7 +151,7 @@ def choose(serial: Serial, new: NewReference, reception: ReceptionOf, now: Now, 
 
 @router.get("/units/{serial:path}/derivation", responses=errors(404, 422), tags=["units"])
 def read_derivation(serial: Serial, store: Reading) -> DerivationSchema:
-    """How many sessions of the unit are still to be judged again after a change of its records."""
+    """Number of the unit's sessions still to be judged again after a change of its records."""
     counted = Derivations(store).counted(Units(store).key(serial))
     return DerivationSchema(unit=serial, sessions=len(counted), waiting=Derivations(store).waiting_of(serial))
 
@@ -182,7 +182,7 @@ def add_service(serial: Serial, new: NewServiceSchema, reception: ReceptionOf, n
 def preview(
     serial: Serial, new: NewServiceSchema, reception: ReceptionOf, now: Now, person: PersonOf, language: LanguageOf
 ) -> ServicePreview:
-    """What a service would change: verdicts, the next calibration and flags. Nothing is stored."""
+    """The changes that a service would bring: verdicts, the next calibration and flags. Nothing is stored."""
     done = NewService(new.kind, new.at or now, new.note, person.signs(new.by), new.sensor)
     return said_in(preview_service(reception.storage, deriving(reception, now), serial, done), language)
 

@@ -37,7 +37,7 @@ DONE = {
     RecordState.WITHDRAWN: "withdraw session",
     RecordState.SUPERSEDED: "supersede session",
 }
-"""What the audit calls each."""
+"""Names of the changes in the audit trail."""
 
 
 def change(
@@ -63,11 +63,11 @@ def _was_questioned(store: Store, id: str) -> bool:
 
 
 OTHERWISE_WRITTEN = ("channels-swapped", "sign-reversed", "runs-swapped", "beta-reversed", "positions-swapped")
-"""Causes that say of a file that it states something else than what was done."""
+"""Causes by which a file states something else than was done."""
 QUESTIONED = "Questioned, not judged: "
 """Heads the reason."""
 NOTHING_KNOWN = Remedies()
-"""Nothing that would put it right."""
+"""Remedies where none is known."""
 
 
 def question(
@@ -80,9 +80,9 @@ def question(
 
 
 def question_diagnosed(store: Store, context: Deriving, id: str, found: Diagnosed) -> Derived | None:
-    """Questions an accepted session whose diagnosis finds it written down otherwise than it was done.
+    """Questions an accepted session whose diagnosis finds that its file states something else than was done.
 
-    One that an engineer accepted stays so. What is left of what follows; None where nothing changed.
+    One that an engineer accepted stays accepted. Returns the remaining derivations; None where nothing changed.
     """
     named = [finding for finding in found.findings if finding.cause in OTHERWISE_WRITTEN]
     session = Sessions(store).get(id)

@@ -1,4 +1,4 @@
-"""What routes ask for by type: what changes records."""
+"""Dependencies of routes that change records."""
 
 from typing import Annotated
 
@@ -17,4 +17,4 @@ def _reception(request: Request, storage: StorageOf, person: PersonOf) -> Recept
 
 
 ReceptionOf = Annotated[Reception, Depends(_reception)]
-"""What takes in uploads."""
+"""Receiver of uploads and of changes of records."""

@@ -1,9 +1,9 @@
-"""Step: everything that is derived of a unit's accepted records, brought in line with them after a change.
+"""Step: everything derived from a unit's accepted records, brought in line with them after a change.
 
-References, verdicts with their decisions and common motions, the unit's line in the fleet and its open flags. Every
-flow that changes which records count ends with it, within its own transaction, and nothing is computed in that: what
-was foreseen is put down, what remains is left to be judged, and `service.records.follow` does it next. A session whose
-verdict rests on what it must rest on is left alone, so an ordinary upload judges one session.
+It concerns references, verdicts with their decisions and common motions, the unit's line in the fleet and its open
+flags. Every flow that changes which records count ends with it, within its own transaction, in which nothing is
+computed: foreseen results are stored, the rest is left to be judged by `service.records.follow`. A session whose
+verdict rests on the right records is left alone, so an ordinary upload judges one session.
 """
 
 from collections.abc import Collection, Mapping, Sequence
@@ -52,13 +52,13 @@ NOTHING_FORESEEN = Foreseen()
 
 @dataclass(frozen=True)
 class Deriving:
-    """What a derivation takes beside the transaction that changes a record."""
+    """Environment of a derivation, besides the transaction that changes a record."""
 
     files: Files
     coverage_factor: float
     at: datetime
     at_once: int | None = AT_ONCE
-    """None where all are judged now."""
+    """Most sessions judged at once; None where all are judged now."""
     outlook: bool = True
     """Whether the outlook is asked for: of many files in a row the last one brings it."""
     is_dated_later: bool = False
@@ -67,10 +67,10 @@ class Deriving:
 
 @dataclass(frozen=True)
 class Derived:
-    """What a derivation did and left."""
+    """Result of a derivation, and the work that it left."""
 
     judged: tuple[str, ...]
-    """Before the answer."""
+    """Sessions judged before the answer."""
     waiting: int
     """Sessions that are to be judged after the answer."""
     latest: StoredSession | None
@@ -92,10 +92,11 @@ def derive_again(
     known: KnownUnit | None = None,
     foreseen: Foreseen = NOTHING_FORESEEN,
 ) -> Derived:
-    """Derives what is known of a unit after its records changed from a date on; ``touched`` are judged in any case.
+    """Makes all derived results of a unit again after its records changed from a date on; ``touched`` are judged in any
+    case.
 
-    ``known``: what this transaction has read of the unit, where nothing of it changed since. ``foreseen``: what was
-    worked out before it; the rest is left to `service.records.follow`.
+    ``known``: records of the unit that this transaction has read, where none of them changed since. ``foreseen``:
+    results computed before it; the rest is left to `service.records.follow`.
     """
     known = known or known_unit(store, Units(store).hold(serial))
     places = places_of(known)
@@ -121,7 +122,7 @@ def derive_again(
 def _fitting(
     context: Deriving, serial: str, known: KnownUnit, stale: Sequence[Place], foreseen: Foreseen
 ) -> tuple[Place, ...]:
-    """Of the sessions that are to be judged those that were judged so before the transaction."""
+    """The sessions to be judged whose judgement from before the transaction still holds."""
     found = [p for p in stale if p.session.id in foreseen.outcomes]
     if not found:
         return ()
@@ -152,7 +153,9 @@ def _ask_again(
 
 
 def _own(left: Sequence[Place], touched: Sequence[str], most: int | None) -> tuple[str, ...]:
-    """Which of those that are left whoever changed the records judges."""
+    """The remaining sessions that the caller that changed the records judges itself: the touched ones, or all if
+    few.
+    """
     few = most is None or len(left) <= most
     return tuple(p.session.id for p in left if few or p.session.id in touched)
 
@@ -180,7 +183,7 @@ def sum_up(store: Store, context: Deriving, serial: str) -> StoredSession | None
 
 
 NOTHING_STORED = UnitRecords((), (), (), frozenset(), {}, {})
-"""Of a unit that is not known yet."""
+"""Records of a unit that is not known yet."""
 NOT_STORED = 0
 """Number of such a unit, under which nothing is found."""
 

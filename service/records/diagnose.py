@@ -1,8 +1,8 @@
-"""Flow: what the simulation gets wrong about a stored session, found once and kept.
+"""Flow: the diagnosis of a stored session, made once and stored.
 
 A session without a diagnosis is one whose diagnosis is pending. An upload asks for it within its own transaction, and
-background processes make it, or else whoever reads it first: see `service.work.loop`. So an
-acknowledged upload is never left without one.
+background processes make it, or else its first reader does: see `service.work.loop`. So an acknowledged upload is never
+left without one.
 """
 
 from dataclasses import dataclass, replace
@@ -50,16 +50,16 @@ MOST_EARLIER = 10
 
 @dataclass(frozen=True)
 class DiagnosisTask:
-    """A stored session with what its diagnosis looks at."""
+    """A stored session with the input of its diagnosis."""
 
     session: StoredSession
     earlier: tuple[StoredSession, ...]
-    """Of the same unit and epoch, oldest first."""
+    """Earlier sessions of the same unit and epoch, oldest first."""
     model_revision: int
 
 
 def task_of(store: Store, id: str) -> DiagnosisTask:
-    """What the diagnosis of a session looks at."""
+    """The input for the diagnosis of a session."""
     session = Sessions(store).get(id)
     since = Services(store).began(Units(store).key(session.unit), session.started_at)
     revisions = Models(store).of_session(id)
@@ -71,7 +71,7 @@ def task_of(store: Store, id: str) -> DiagnosisTask:
 def diagnose(storage: Storage, id: str, now: datetime, coverage_factor: float = COVERAGE) -> StoredDiagnosis:
     """The diagnosis of a session: the stored one, or a new one that is stored.
 
-    Where what it looks at changes meanwhile it is made anew.
+    Where its input changes meanwhile it is made anew.
     """
     context = Deriving(storage.files, coverage_factor, now)
     while True:
@@ -103,8 +103,9 @@ def give_up(storage: Storage, id: str, now: datetime) -> None:
 
 
 def _keep(store: Store, context: Deriving, unit: str, made: StoredDiagnosis, ticket: str | None) -> Derived | None:
-    """Where it is of what is known now it is stored, unless another one was made meanwhile, and what is left of what
-    follows is returned; None where it is not."""
+    """Stores a diagnosis made from current records, unless another one was made meanwhile, and returns the remaining
+    derivations; None where it is outdated.
+    """
     Units(store).hold(unit)
     if not WorkQueue(store, WorkKind.DIAGNOSIS).settle(made.session, ticket):
         return None
@@ -164,12 +165,12 @@ def _found(storage: Storage, task: DiagnosisTask, now: datetime) -> StoredDiagno
 
 
 def _failed(task: DiagnosisTask, summary: str, now: datetime) -> StoredDiagnosis:
-    """Why there is none: the verdict was not checked."""
+    """The result of a failed diagnosis, with the reason: the verdict was not checked."""
     return replace(_nothing_found(task, DiagnosisState.FAILED, summary, now), reservations=UNCHECKED)
 
 
 def _nothing_found(task: DiagnosisTask, state: DiagnosisState, summary: str, now: datetime) -> StoredDiagnosis:
-    """What it came to in one line, and no more."""
+    """The result of a diagnosis in one line, without causes."""
     return StoredDiagnosis(
         session=task.session.id,
         model_revision=task.model_revision,

@@ -1,4 +1,4 @@
-"""What was done to units, notes on their histories, and sessions as found and as left."""
+"""Services of units, notes on their histories, and sessions as found and as left."""
 
 from typing import Literal
 
@@ -51,7 +51,7 @@ class NoteList(BaseModel):
 
 
 class NewStage(Body, json_schema_extra={"example": {"stage": "as-found", "by": "K. Ito"}}):
-    """How a session shows its unit."""
+    """Stage of a session: its unit as found, as left or neither."""
 
     stage: Stage | None = Field(description="Before or after the unit was worked on; null for neither.")
     by: Name = Field(description="Who says so.")

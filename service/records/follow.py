@@ -1,7 +1,7 @@
-"""Flow: what follows from a change of records is worked out after the transaction that changed them, with none open.
+"""Flow: the consequences of a change of records, computed after the transaction that changed them, with none open.
 
-What that transaction left is kept by the sessions themselves, so whatever ends the process between the two, the work
-in the background (`service.work.watch`) finds it.
+The sessions themselves keep the work that the transaction left, so whatever ends the process between the two, the
+background work (`service.work.watch`) finds it.
 """
 
 from collections.abc import Iterator, Sequence
@@ -73,7 +73,9 @@ def _alone(url: str, serial: str) -> Iterator[None]:
 
 
 def derive_left(storage: Storage, context: Deriving, serial: str, derived: Derived) -> None:
-    """What a transaction has left to whoever changed the records; the rest is left to background work."""
+    """Judges what a transaction has left to the caller that changed the records; the rest is left to background
+    work.
+    """
     if not derived.is_left:
         return
 
@@ -137,7 +139,9 @@ def _weigh_waiting(storage: Storage, context: Deriving, serial: str, sessions: S
 
 
 def _left(store: Store, context: Deriving, serial: str) -> int:
-    """How many sessions of a unit wait; where none does any more, what follows from all of them."""
+    """The number of a unit's waiting sessions; where there are none any more, all that follows from the sessions is
+    made.
+    """
     left = Derivations(store).waiting_of(serial)
     if not left:
         WorkQueue(store, WorkKind.DERIVATION).drop(serial)
@@ -147,15 +151,16 @@ def _left(store: Store, context: Deriving, serial: str) -> int:
 
 
 def date(storage: Storage, context: Deriving, *serials: str) -> None:
-    """After a change of records, where no background process does it. What fails is kept with why, and costs
-    nobody else anything."""
+    """Computes dates after a change of records, where no background process does it. A failure is kept with its reason,
+    and does not affect anybody else.
+    """
     for serial in () if context.is_dated_later or not context.outlook else serials:
         with ending_here("outlook", serial):
             date_one(storage, serial, context.at)
 
 
 def date_one(storage: Storage, serial: str, now: datetime) -> None:
-    """The same for one unit, whose failure is the caller's too."""
+    """Makes the outlook of one unit; its failure is the caller's too."""
 
     def keep(why: str) -> None:
         with storage.database.writing() as store:

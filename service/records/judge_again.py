@@ -1,5 +1,5 @@
-"""Step: sessions judged as their places say: worked out with no transaction open that others wait for, and put down
-within one, where it still holds.
+"""Step: sessions judged at their places, computed while no blocking transaction is open, and stored within one where
+the result still holds.
 """
 
 from bisect import bisect_left, bisect_right
@@ -49,9 +49,9 @@ class Place:
 
     session: Counted
     reference: Counted | None
-    """That it is judged against; itself where it is the reference, None where the epoch has none."""
+    """Reference against which it is judged; itself where it is the reference, None where the epoch has none."""
     since: datetime | None
-    """When its epoch began; None in the unit's first one."""
+    """Beginning of its epoch; None in the unit's first one."""
     is_chosen: bool = False
     """Whether an engineer ever chose it for the reference."""
     learned: tuple[Counted, ...] = ()
@@ -88,8 +88,9 @@ def placed(
 ) -> tuple[Place, ...]:
     """Every accepted session with its reference, in order of time.
 
-    ``chosen`` are the sessions that engineers chose, oldest choice first; ``is_blind`` says of a session whether it
-    gives no uncertainty that others could be judged with; ``enough`` sessions tell a law over temperature.
+    ``chosen`` are the sessions that engineers chose, oldest choice first; ``is_blind`` tells whether a session gives no
+    uncertainty that others could be judged with; ``enough`` is the number of sessions from which on a law over
+    temperature is estimated.
     """
     ordered = sorted(sessions, key=_moment)
     groups: dict[Group, list[Counted]] = {}
@@ -130,10 +131,10 @@ def _moment(session: Counted) -> Moment:
 
 
 def needs_judging(places: Sequence[Place], since: datetime) -> tuple[Place, ...]:
-    """Those whose verdict rests on something else than it must.
+    """The sessions whose verdict does not rest on the right records.
 
-    Of a verdict from before this was kept it is taken to be right, unless a change touches it: from a date on, or where
-    the reference of its epoch is another one.
+    A verdict from before this was stored is taken to be right, unless a change touches it: from a date on, or where the
+    reference of its epoch is another one.
     """
     moved = {(p.session.block, p.since) for p in places if p.session.is_reference != p.is_reference}
     return tuple(p for p in places if _is_stale(p, since, moved))
@@ -156,7 +157,7 @@ def _since(at: datetime, breaks: Sequence[datetime]) -> datetime | None:
 
 
 def _reference(group: Sequence[Counted], rank: dict[str, int], is_blind: Callable[[Counted], bool]) -> Counted | None:
-    """The one chosen last, or the first that gives an uncertainty."""
+    """The session chosen last, or the first that gives an uncertainty."""
     chosen = max((s for s in group if s.id in rank), key=lambda s: rank[s.id], default=None)
     if chosen is not None:
         return chosen
@@ -171,39 +172,39 @@ NOTHING_TO_COMPARE = (
 
 @dataclass(frozen=True)
 class Judging:
-    """What sessions of a unit are judged by."""
+    """Basis for judging sessions of a unit."""
 
     files: Files
     coverage_factor: float
     at: datetime
-    """When what is stored now is computed."""
+    """Time of computation of the results that are stored now."""
     of_type: TypeThroughTime
     computed: Mapping[str, datetime]
-    """When the calibrations of sessions that are stored were computed."""
+    """Times at which the stored calibrations of sessions were computed, by session."""
 
     def unit_type(self, id: str) -> UnitType:
-        """With the tolerances that held when the calibration of a session was computed."""
+        """The unit type with the tolerances that held when the calibration of a session was computed."""
         return held_at(self.of_type, self.computed.get(id, self.at))
 
 
 @dataclass(frozen=True, eq=False)
 class Rejudgement:
-    """How a session is judged at its place, by a revision of the tolerances."""
+    """Judgement of a session at its place, by a revision of the tolerances."""
 
     basis: str
     unit_type: UnitType
     judged: Judged
     moved: MadeCalibration | None = None
-    """Of a recording in service that can be compared: the calibration that it moves."""
+    """Calibration moved by a recording in service that can be compared."""
 
 
 @dataclass(frozen=True)
 class Foreseen:
-    """How sessions are judged if nothing changes until their transaction."""
+    """Judgements that hold if nothing changes until their transaction."""
 
     outcomes: Mapping[str, Rejudgement] = field(default_factory=dict)
     references: Mapping[tuple[str, int], Calibration] = field(default_factory=dict)
-    """Those that they are judged against, by session and revision: they never change under one."""
+    """References of these judgements, by session and revision: a session's calibration never changes under one."""
 
 
 def places_of(known: KnownUnit) -> tuple[Place, ...]:
@@ -216,13 +217,13 @@ def places_of(known: KnownUnit) -> tuple[Place, ...]:
 def judging(
     known: KnownUnit, serial: str, places: Sequence[Place], files: Files, coverage_factor: float, at: datetime
 ) -> Judging:
-    """What some of a unit's sessions are judged by."""
+    """The basis for judging some of a unit's sessions."""
     computed = Derivations(known.store).computed_at([p.session.id for p in places if p.session.id not in known.made])
     return Judging(files, coverage_factor, at, UnitTypes(known.store).of_unit_through_time(serial), computed)
 
 
 def judged(known: KnownUnit, rules: Judging, places: Sequence[Place]) -> Foreseen:
-    """The numerical part, on what is stored."""
+    """The judgements of sessions at their places, computed from stored results."""
     against = [p.reference for p in places if p.reference is not None]
     learned = {session.id for p in places for session in p.learned}
     known.read_all([*(p.session.id for p in places), *(session.id for session in against), *learned])
@@ -245,7 +246,7 @@ def _outcome(known: KnownUnit, rules: Judging, place: Place) -> Rejudgement:
 
 
 def _steps(known: KnownUnit, place: Place, reference: Calibration, unit_type: UnitType) -> Steps:
-    """What the temperature of a session is worth, by the sessions before it and the laws of its type."""
+    """The effects of a session's temperature, by the sessions before it and the laws of its type."""
     if not place.learned or place.reference is None:
         return NO_STEPS
     start = place.learned[0].at

@@ -1,4 +1,6 @@
-"""Step: what the database keeps of sessions' calibrations under a model revision, beside what others gave."""
+"""Step: calibrations of sessions under a model revision → their rows in the database, beside those of other
+revisions.
+"""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -43,7 +45,7 @@ def made(calibration: Calibration) -> MadeCalibration:
 
 
 def keep(store: Store, unit: int, new: Sequence[tuple[StoredSession, MadeCalibration]], at: datetime) -> None:
-    """The calibrations and the parameters of the history; what is decided of them is derived."""
+    """Stores the calibrations and the parameters of the history; decisions on them are derived."""
     Calibrations(store).add([(record, calibrated.packed) for record, calibrated in new], at)
     History(store).add(unit, [(record, calibrated.values) for record, calibrated in new])
 

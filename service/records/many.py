@@ -2,12 +2,12 @@
 
 A unit whose computing fails is reported and stops no other.
 
-What is done is not done again: `units_behind` names the units with sessions of an earlier revision than concerns them.
-So a run that was ended goes on where it was, and a second one beside it does nothing twice.
+Finished units are not computed again: `units_behind` names the units with sessions of an earlier revision than concerns
+them. So a run that was ended goes on where it was, and a second one beside it does nothing twice.
 
 A task is a unit: its worker reads, computes, judges and writes, over a connection of its own. Of the work on a session
-less than a third is its calibration, and the rest would wait for one writer (`python -m benchmarks.p8_recompute`).
-A worker that dies leaves a transaction that the database undoes, and Dask gives the unit to another.
+less than a third is its calibration, and the rest would wait for one writer (`python -m benchmarks.p8_recompute`). A
+worker that dies leaves a transaction that the database undoes, and Dask gives the unit to another.
 
 No address and no password travels: a worker reads its own settings, and a task names the last line of the audit trail,
 so that a worker with another database refuses it. Processes of this machine speak over TLS with keys made for the run.
@@ -45,7 +45,7 @@ WITHOUT = "Computing in several processes needs a library that is missing: {faul
 
 @dataclass(frozen=True)
 class UnitOutcome:
-    """What became of a unit: one of the two is there."""
+    """Result for a unit: one of the two is given."""
 
     unit: str
     done: Recalibrated | None
@@ -77,7 +77,7 @@ def recalibrate_one(storage: Storage, serial: str, now: datetime, coverage_facto
 
 
 def one_by_one(storage: Storage, clock: Callable[[], datetime], coverage_factor: float) -> Run:
-    """In this process."""
+    """Runs one unit after another in this process."""
     return lambda serials: (recalibrate_one(storage, serial, clock(), coverage_factor) for serial in serials)
 
 
@@ -89,7 +89,9 @@ def can_share() -> bool:
 def by_workers(
     storage: Storage, settings: Settings, clock: Callable[[], datetime], *, workers: int, scheduler: str | None = None
 ) -> AbstractContextManager[Run]:
-    """By so many processes of this machine, or by those of a Dask scheduler; ServiceError where Dask is missing."""
+    """Runs in so many processes of this machine, or in those of a Dask scheduler; ServiceError where Dask is
+    missing.
+    """
     try:
         room = import_module(ROOM)
     except ModuleNotFoundError as fault:
@@ -104,17 +106,19 @@ def by_workers(
 AHEAD = 4
 """Units that are given to each thread of a worker before it asks: it never waits, and no list of a million is held."""
 PATIENCE = "30s"
-"""That a scheduler, and its first worker, is waited for."""
+"""Time to wait for a scheduler, and for its first worker."""
 QUIET = {"dashboard": False, "dashboard_address": "127.0.0.1:0"}
-"""Dask's own pages need what is not installed; its figures lie on a port of this machine."""
+"""Dask's own pages need packages that are not installed; its figures are on a port of this machine."""
 PROFILING = "distributed.worker.profile.enabled"
-"""Of Dask: what its workers were seen at, every hundredth of a second, kept for an hour: most of a gigabyte each."""
+"""Dask's setting that samples the work of its workers every hundredth of a second and keeps it for an hour: most of a
+gigabyte each.
+"""
 OTHER = "This worker's database is another one; set its IMU_HEALTH_DATABASE_URL and IMU_HEALTH_DATA_FOLDER."
 
 
 @contextmanager
 def local_cluster(settings: Settings, workers: int) -> Iterator[Client]:
-    """So many processes of this machine with these settings."""
+    """Cluster of so many processes of this machine with these settings."""
     environment = {
         "IMU_HEALTH_DATABASE_URL": settings.database,
         "IMU_HEALTH_DATA_FOLDER": str(settings.data_folder),
@@ -148,7 +152,7 @@ def real_cluster(address: str) -> Iterator[Client]:
 
 @contextmanager
 def running(cluster: AbstractContextManager[Client], last: str, clock: Callable[[], datetime]) -> Iterator[Run]:
-    """What computes units as long as the cluster is there."""
+    """Computes units as long as the cluster is there."""
     with cluster as client:
         yield lambda serials: _run(client, serials, last, clock)
 
@@ -183,7 +187,9 @@ def _work(last: str, serial: str, now: datetime) -> UnitOutcome:
 
 @cache
 def _own(last: str) -> tuple[Storage, float]:
-    """By this process's settings, once it was seen that they name the database with this line."""
+    """Storage and coverage factor by this process's settings, once they are seen to name the database with this
+    line.
+    """
     settings = Settings()
     limits.use(limits.limits_of(settings))
     storage = open_storage(settings)

@@ -1,8 +1,9 @@
-"""Engineers accept causes and what groups show into models, and withdraw them.
+"""Engineers accept causes and findings of groups into models, and withdraw them.
 
-The size is the group's: no session fits it again. Whose model it becomes part of was found with it.
+The size of a group's finding is the group's: no session fits it again. The model that it becomes part of was found with
+it.
 
-What a group of sessions showed goes out of every session that it concerned.
+A withdrawn finding of a group is taken out of every session that it concerned.
 """
 
 from dataclasses import replace
@@ -86,7 +87,7 @@ def _compute_again(store: Store, changed: ModelRevision, now: datetime) -> int:
 def _finding(findings: tuple[Finding, ...], wanted: str) -> Finding:
     """The finding that is accepted, under its own name or under that of an equal alternative.
 
-    What only several sessions show together is accepted from those, at the size that they found.
+    A finding of several sessions together is accepted from those, at the size found there.
     """
     findings = tuple(f for f in findings if f.over_sessions is None)
     named = [f for f in findings if f.cause == wanted]
@@ -216,7 +217,7 @@ def evidence_of(finding: GroupFinding, shown: GroupShown) -> AcceptedFinding:
 
 
 def term_evidence(term: EmpiricalTerm, shown: GroupShown) -> AcceptedFinding:
-    """A learned term as a revision keeps it: its evidence is what it gains on the sessions that took no part."""
+    """A learned term as a revision keeps it: its evidence is its gain on the sessions without part in the fit."""
     return AcceptedFinding(
         p_value=min(1.0, exp(-max(term.gain, 0.0))),
         strength=hypot(*(a / s for a, s in zip(term.amplitude, term.sigma, strict=True))),

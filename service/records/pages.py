@@ -120,7 +120,7 @@ class ForeseenPage:
 
     service: NewService
     what: str
-    """In words: `Repair of A3`."""
+    """Service in words: `Repair of A3`."""
     preview: ServicePreview
 
 
@@ -138,7 +138,7 @@ def add_service(
     note: FormLines = "",
     sure: Annotated[bool, Form()] = False,
 ) -> Response:
-    """Records what was done to the unit; of a service before stored sessions it first shows what that changes."""
+    """Records a service of the unit; for one before stored sessions it first shows the changes."""
     new, k = NewService(kind, at or now, note, by, sensor), reception.coverage_factor
     if not sure and at is not None:
         foreseen = preview_service(reception.storage, deriving(reception, now), serial, new)
@@ -181,7 +181,7 @@ MOST_TYPES = 500
 
 @dataclass(frozen=True)
 class RegisterPage:
-    """The forms of the register, and what became of a list that was imported."""
+    """The forms of the register, and the result of an import."""
 
     types: tuple[str, ...]
     entered: Entered | None = None
@@ -211,7 +211,7 @@ def enter_unit(
 
 @router.post("/register/import", response_class=HTMLResponse)
 def import_units(request: Request, sent: SentOf, storage: StorageOf, now: Now) -> HTMLResponse:
-    """Enters the units of a table; the page again with what became of it."""
+    """Enters the units of a table; shows the page again with the result."""
     with storage.database.reading() as store:
         types = tuple(unit_type.name for unit_type in UnitTypes(store).page(0, MOST_TYPES))
     try:

@@ -1,7 +1,7 @@
-"""Flow: what a service would change, before it is recorded: verdicts, the next calibration and flags.
+"""Flow: the changes that a service would bring, before it is recorded: verdicts, the next calibration and flags.
 
-The service is recorded in transactions that are undone, by the steps that record it: what is shown is what would be
-there once its unit's dates are worked out. Sessions are judged and dates forecast between them, as they always are.
+The service is recorded in transactions that are undone, by the steps that record it: the preview is the state once its
+unit's dates are worked out. Sessions are judged and dates forecast between the transactions, as always.
 """
 
 from collections.abc import Iterator, Mapping
@@ -33,7 +33,7 @@ from service.units.records import ForeseenChange, ForeseenKind, NewService, Serv
 from service.units.store import Services, Units
 
 RAISED, RESOLVED = ("none", "open"), ("open", "resolved")
-"""What becomes of a flag, before and after."""
+"""States of a flag that a service raises or resolves, before and after."""
 DIAGNOSED_AGAIN = ("open", "resolved until the sessions are diagnosed again")
 
 
@@ -41,9 +41,9 @@ DIAGNOSED_AGAIN = ("open", "resolved until the sessions are diagnosed again")
 class _State:
     sessions: tuple[StoredSession, ...]
     next: str
-    """Its next calibration, in words."""
+    """Next calibration in words."""
     flags: Mapping[tuple[str, str], Flag]
-    """Open ones."""
+    """Open flags by matter and place."""
 
     @property
     def counted(self) -> tuple[StoredSession, ...]:
@@ -73,7 +73,7 @@ class _Trial:
 
 
 def preview_service(storage: Storage, context: Deriving, serial: str, new: NewService) -> ServicePreview:
-    """What would change; RefusedError where it cannot be recorded."""
+    """The changes that a service would bring; RefusedError where it cannot be recorded."""
     with storage.database.reading() as store:
         require_possible(store, serial, new, context.at)
         before, foreseen = _state(store, serial), _judged_with(store, context, serial, new)
@@ -91,7 +91,7 @@ def _judged_with(store: Store, context: Deriving, serial: str, new: NewService) 
 
 
 def _after(trial: _Trial) -> _State:
-    """With the dates, which are forecast between the transactions."""
+    """The state after the service, with the dates, which are forecast between the transactions."""
     serial = trial.serial
     with trial.recorded() as store:
         known = known_of(store, serial)

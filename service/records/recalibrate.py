@@ -50,18 +50,18 @@ from service.units.store import Units
 @answer
 @dataclass(frozen=True)
 class Recalibrated:
-    """What became of a unit's stored sessions."""
+    """Result of computing a unit's stored sessions again."""
 
     unit: str
     """Serial number of the unit."""
     sessions: int
-    """How many it has."""
+    """Sessions of the unit."""
     recomputed: int
-    """How many have a new calibration under the model in force."""
+    """Sessions with a new calibration under the model in force."""
     unchanged: int
-    """How many had one already."""
+    """Sessions that had one already."""
     kept: Hidden[tuple[LeftSession, ...]]
-    """Sessions that cannot be calibrated under it, or whose file is lost; they keep what they have."""
+    """Sessions that cannot be calibrated under it, or whose file is lost; they keep their calibration."""
     revision: int
     """The latest model revision that any of them rests on; 0 is the baseline."""
     verdicts: Hidden[tuple[MovedVerdict, ...]] = ()
@@ -72,12 +72,12 @@ class Recalibrated:
     @computed_field  # type: ignore[prop-decorator]  # the one way to describe a property
     @property
     def left(self) -> int:
-        """How many cannot be calibrated under it and keep what they have."""
+        """Sessions that cannot be calibrated under it and keep their calibration."""
         return len(self.kept)
 
 
 def nothing(store: Store, done: Recalibrated) -> None:
-    """What else is done with it unless somebody says so."""
+    """Records nothing, the default."""
 
 
 def recalibrate(
@@ -122,9 +122,9 @@ def recalibrate(
 class _Source:
     session: StoredSession
     model: Model
-    """In force now."""
+    """Model in force now."""
     values: tuple[ParameterValue, ...]
-    """As they were computed before."""
+    """Parameters as they were computed before."""
     recording: Calibration | None
     """The calibration of a recording in service."""
 
@@ -146,7 +146,7 @@ def _sources(storage: Storage, serial: str, until: int | None) -> list[_Source]:
 
 
 def _concerning(revisions: Iterable[ModelRevision], stand: str | None) -> list[ModelRevision]:
-    """Of a unit's revisions those that concern its sessions on a stand."""
+    """Revisions of a unit's model that concern its sessions on a stand."""
     return [r for r in revisions if r.scope is not Scope.STAND or r.subject == stand]
 
 
@@ -232,7 +232,7 @@ def _write_down(
 
 
 def recompute_beside(reception: Reception, now: datetime) -> None:
-    """Wakes whoever works in the background; where nobody does, it is done at once."""
+    """Wakes the background work; without any, the recomputation is done at once."""
     reception.ring()
     while not reception.is_dated_later:
         with reception.storage.database.reading() as store:
@@ -243,7 +243,9 @@ def recompute_beside(reception: Reception, now: datetime) -> None:
 
 
 def recompute(storage: Storage, task: Task, now: datetime, coverage_factor: float) -> None:
-    """Nothing is overwritten: earlier results stay readable under their revision."""
+    """Computes a unit's sessions again for a task. Nothing is overwritten: earlier results stay readable under their
+    revision.
+    """
 
     def settle(store: Store, done: Recalibrated) -> None:
         outcome = Recomputed(done.sessions, done.recomputed, done.left, done.verdicts, done.furthest)

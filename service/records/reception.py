@@ -1,6 +1,6 @@
-"""What changes of records need: stores, clock, who asks.
+"""Environment of changes of records: stores, clock, and the person.
 
-The one entry of the API and of the pages. The diagnosis is asked for within the transaction that stores, and made
+It is the one entry of the API and of the pages. The diagnosis is asked for within the transaction that stores, and made
 in the background.
 """
 
@@ -14,7 +14,7 @@ from service.storage import Storage
 
 @dataclass(frozen=True)
 class Reception:
-    """What receiving takes, apart from the file."""
+    """Environment of receiving files and changing records."""
 
     storage: Storage
     coverage_factor: float
@@ -22,8 +22,8 @@ class Reception:
     ring: Callable[[], None]
     """Notified when there are sessions to be diagnosed."""
     who: str = "crew"
-    """That sends the files."""
+    """Person who sends the files."""
     is_dated_later: bool = False
     """Whether the unit's dates are worked out in the background."""
     course: UploadHooks = NO_HOOKS
-    """What is done at the steps of an upload."""
+    """Hooks at the steps of an upload."""

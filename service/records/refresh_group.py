@@ -1,6 +1,6 @@
-"""Flow: what the sessions of a unit, a unit type or a stand show together, made again when one of them changed.
+"""Flow: the joint diagnosis of the sessions of a unit, a unit type or a stand, made again when one of them changed.
 
-It rests on the accepted sessions: a digest of them says whether a stored answer still holds. So a session that is
+It rests on the accepted sessions: a digest of them tells whether a stored answer still holds. So a session that is
 withdrawn, questioned or superseded leaves the pool, and comes back when it is accepted.
 """
 
@@ -36,7 +36,7 @@ from service.storage.queries import Store
 from service.units.store import Services
 
 RULE = b"4"
-"""Version of what an answer says of its sessions: those made by an earlier one are made again."""
+"""Version of the rules of joint diagnoses: those made by an earlier one are made again."""
 
 
 def members_of(store: Store, group: Group) -> Members:
@@ -46,13 +46,13 @@ def members_of(store: Store, group: Group) -> Members:
 
 
 def digest(members: Members) -> str:
-    """64 hexadecimal digits, the same for the same sessions."""
+    """The digest of sessions, 64 hexadecimal digits."""
     lines = (f"{m.session} {m.has_statistics}" for m in members.sessions)
     return sha256(RULE + "\n".join((*lines, str(members.left_out))).encode()).hexdigest()
 
 
 def current(store: Store, group: Group) -> GroupAnswer | None:
-    """The stored answer of a group, if it rests on what is known now; one that this version failed at holds too."""
+    """The stored answer of a group, if it rests on the current records; one that this version failed at holds too."""
     known = Groups(store).get(group)
     if known is None or known.is_of_another(VERSION):
         return None
@@ -60,7 +60,7 @@ def current(store: Store, group: Group) -> GroupAnswer | None:
 
 
 def rests_on_now(store: Store, group: Group, answer: GroupAnswer) -> bool:
-    """Whether an answer rests on the records of now: what was asked for again may."""
+    """Whether an answer rests on the current records; one that was requested again may."""
     return answer.rests_on == digest(members_of(store, group))
 
 
@@ -138,7 +138,7 @@ def _pooled(group: Group, members: Members, records: dict[str, SessionStatistics
 
 
 def _named(record: SessionStatistics, member: Member) -> SessionStatistics:
-    """As the service calls what it belongs to and when it was: a file may not state its type, nor a date."""
+    """The statistics under the service's names and times: a file may state neither its type nor a date."""
     stand, at = member.stand or "", written(member.started_at)
     return replace(record, unit=member.unit, unit_type=member.unit_type, stand=stand, started_at=at)
 

@@ -44,7 +44,7 @@ ACTIONS = {
 
 @dataclass(frozen=True)
 class Entering:
-    """Who enters units, when, and why."""
+    """Person who enters units, time and remark."""
 
     who: str
     now: datetime
@@ -54,7 +54,7 @@ class Entering:
 @answer
 @dataclass(frozen=True)
 class Entered:
-    """What became of a list of units."""
+    """Result of entering a list of units."""
 
     new: int
     """Units that were not known before."""
@@ -179,7 +179,7 @@ def move_unit(
 
 
 def retired_in_words(entry: Registered) -> str:
-    """What a session of a retired unit is taken with; empty of a unit in use."""
+    """The remark on a session of a retired unit; empty for a unit in use."""
     if entry.retired_at is None:
         return ""
     day = day_of(entry.retired_at)

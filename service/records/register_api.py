@@ -36,7 +36,7 @@ class NewEntrySchema(
         "example": {"unit_type": "RA-6", "location": "Hangar 2", "custodian": "K. Ito", "by": "M. Sato"}
     },
 ):
-    """What the register says of a unit."""
+    """Entry of a unit in the register."""
 
     unit_type: Text | None = Field(None, description="Name of its type; needed of a unit that is not known yet.")
     owner: Text | None = Field(None, description="To whom it belongs; null leaves it as it is.")
@@ -47,7 +47,7 @@ class NewEntrySchema(
 
 
 class NewMove(Body, json_schema_extra={"example": {"location": "Hangar 3", "custodian": "M. Sato", "by": "K. Ito"}}):
-    """Where a unit goes, or who gets it."""
+    """Move of a unit to another place or custodian."""
 
     location: Text | None = Field(None, description="Where it is from then on; null where it stays.")
     custodian: Text | None = Field(None, description="Who has it from then on; null where that stays.")
@@ -57,7 +57,7 @@ class NewMove(Body, json_schema_extra={"example": {"location": "Hangar 3", "cust
 
 
 class NewRetirement(Body, json_schema_extra={"example": {"why": "scrapped", "by": "K. Ito"}}):
-    """Why a unit is retired, or put back into use."""
+    """Retirement of a unit, or its return into use."""
 
     why: Reason = Field(description="Why.")
     at: Moment | None = Field(None, description="Since when; now if not given. Without a zone it is UTC.")
@@ -67,10 +67,10 @@ class NewRetirement(Body, json_schema_extra={"example": {"why": "scrapped", "by"
 @answer
 @dataclass(frozen=True)
 class RegisterEntry(Registered):
-    """What the register says of a unit, and how that came about."""
+    """Entry of a unit in the register, with its history."""
 
     history: tuple[Custody, ...] = ()
-    """Where it was and who had it, the latest first."""
+    """Locations and custodians, the latest first."""
 
 
 class RegisterList(BaseModel):
@@ -142,13 +142,13 @@ def import_register(storage: StorageOf, sent: SentOf, now: Now) -> Entered:
 
 @router.get("/units/{serial:path}/register", responses=errors(404, 422))
 def read_entry(serial: Serial, store: Reading) -> RegisterEntry:
-    """What the register says of the unit: owner, location, custodian, and their history."""
+    """The register's entry of the unit: owner, location, custodian, and their history."""
     return entry_of(store, serial)
 
 
 @router.put("/units/{serial:path}/register", responses=errors(400, 422))
 def put_entry(serial: Serial, new: NewEntrySchema, storage: StorageOf, now: Now, person: PersonOf) -> RegisterEntry:
-    """Enter the unit, before or after its first session, or change what the register says of it."""
+    """Enter the unit, before or after its first session, or change its entry in the register."""
     stated = new.model_dump(exclude={"by"})
     entry = NewEntry(serial, **{name: text if text is None else text.strip() for name, text in stated.items()})
     enter(storage, (entry,), Entering(person.signs(new.by), now))

@@ -42,9 +42,9 @@ def supersede_session(
 def supersede(
     store: Store, context: Deriving, replaced: Replaced, successor: StoredSession, settled: str | None
 ) -> dict[str, Derived]:
-    """The same within a transaction; derives what is known of the units concerned.
+    """Marks a session as superseded within a transaction, and derives the state of the units concerned.
 
-    ``settled``: the doubt that the other session is in and that this answers, of `settled_by`.
+    ``settled``: the doubt about the other session that this resolves, from `settled_by`.
     """
     is_settled = _is_in_doubt_for(store, successor, settled)
     known = give_way(store, context.at, replaced, successor)
@@ -58,8 +58,9 @@ def supersede(
 
 
 def settled_by(storage: Storage, replaced: str, successor: str) -> str | None:
-    """The one doubt that a questioned session is in, where it is that it holds the readings of the session which it
-    supersedes now."""
+    """The only doubt about a questioned session, where it is that it holds the readings of the session which it
+    supersedes now.
+    """
     with storage.database.reading() as store:
         session = Sessions(store).get(successor)
     if session.state is not RecordState.QUESTIONED:

@@ -41,7 +41,7 @@ def comment_on(storage: Storage, session: str, text: str, *, who: str, now: date
 
 @dataclass(frozen=True)
 class Attaching:
-    """A file, what it is attached to, and what somebody says of it."""
+    """A file, its unit or session, and a description."""
 
     filename: str
     content: Content

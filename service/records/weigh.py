@@ -1,4 +1,4 @@
-"""Step: what a diagnosis means for its session's verdict: the verdict with the named causes, and the reservations."""
+"""Step: a diagnosis → its effect on the session's verdict: the verdict with the named causes, and the reservations."""
 
 from dataclasses import dataclass, field, replace
 from datetime import datetime
@@ -44,32 +44,32 @@ from service.units.store import Units
 
 @dataclass(frozen=True, eq=False)
 class Weighing:
-    """What is stored that a diagnosis is weighed by."""
+    """Stored facts by which a diagnosis is weighed."""
 
     verdict: Verdict | None
-    """In force; None of a reference, or where nothing was judged."""
+    """Verdict in force; None for a reference, or where nothing was judged."""
     basis: Basis | None
-    """None where there is nothing to judge by."""
+    """Basis of the verdict; None where there is nothing to judge by."""
     tolerances: dict[tuple[str, str], float]
     known: frozenset[tuple[str, str]]
     """Causes in the model in force, with the sensor or an empty name."""
     temperatures: Covered | None
-    """Of the session, beside those of its unit; None where nothing says them."""
+    """Temperatures of the session, besides those of its unit; None where nothing states them."""
     steps: Steps = field(default_factory=dict)
-    """What its temperature is worth, taken off before it was judged."""
+    """Effects of its temperature, taken off before it was judged."""
 
 
 @dataclass(frozen=True)
 class Weighed:
-    """What a diagnosis means for the verdict."""
+    """Effect of a diagnosis on the verdict."""
 
     verdict_after: Verdict | None
-    """With the named causes in the model; None where none was named, or where nothing was judged."""
+    """Verdict with the named causes in the model; None where none was named, or where nothing was judged."""
     reservations: tuple[Reservation, ...]
 
 
 def weighing_of(store: Store, id: str, block: str) -> Weighing:
-    """What a session of a block was judged by; a reference by the tolerances that held when it was computed, too."""
+    """The basis of a session's judgement, and for a reference the tolerances that held when it was computed."""
     stored, decisions = Sessions(store).get(id), Sessions(store).decisions(id)
     computed = Derivations(store).computed_at([id])[id]
     unit_type = held_at(UnitTypes(store).of_unit_through_time(stored.unit), computed)
@@ -139,7 +139,7 @@ def unlooked(storage: Storage, id: str) -> tuple[Reservation, ...]:
 
 @dataclass(frozen=True)
 class Weighable:
-    """What a diagnosis is weighed beside, as far as it changes."""
+    """Inputs of a weighing that can change."""
 
     basis: str | None
     document: str | None
@@ -153,18 +153,19 @@ class WeighedAgain:
     id: str
     weighable: Weighable
     reservations: tuple[Reservation, ...] | None
-    """None where there is nothing to weigh."""
+    """New reservations; None where there is nothing to weigh."""
 
 
 def weighable(store: Store, session: Counted) -> Weighable:
-    """As it is now."""
+    """The inputs of a session's weighing as they are now."""
     made = Diagnoses(store).get(session.id)
     return Weighable(session.rests_on, None if made is None or made.found is None else made.document)
 
 
 def weighed_again(storage: Storage, session: Counted) -> WeighedAgain:
-    """After another calibration or verdict of a session came into force: its reservations; where its file is lost
-    or can no longer be read, that nobody could look. No transaction is open."""
+    """The reservations of a session after another calibration or verdict of it came into force; where its file is lost
+    or can no longer be read, the reservation that it was not checked. No transaction is open.
+    """
     id = session.id
     with storage.database.reading() as store:
         weighed, stored, made = weighable(store, session), Sessions(store).get(id), Diagnoses(store).get(id)

@@ -25,7 +25,7 @@ from service.storage.json_text import STORED, json_text
 from service.storage.queries import Queries, lists
 
 LEVEL = 4
-"""Of deflate: 4 % more bytes than the usual 6, in 40 % of the time; an upload waits for it."""
+"""Level of deflate: 4 % more bytes than the usual 6, in 40 % of the time; an upload waits for it."""
 
 
 @dataclass(frozen=True)
@@ -105,8 +105,9 @@ class Calibrations(Queries):
     def beside_reference(
         self, sessions: Iterable[str], reference: Select[str]
     ) -> tuple[str | None, dict[str, Calibration], dict[str, Steps]]:
-        """The reference that a query names, and of it and of some sessions the calibrations in force and what was
-        taken off for temperature; in one query."""
+        """The reference selected by a query, with the calibrations in force and the corrections for temperature of it
+        and of some sessions; in one query.
+        """
         listed, against, row = lists("calibrations", "laws"), reference.scalar_subquery(), DecisionRow
         calibrated = (CalibrationRow.session_id == SessionRow.id) & (CalibrationRow.revision == SessionRow.revision)
         decided = (row.session_id == SessionRow.id) & (row.revision == SessionRow.revision)
@@ -149,7 +150,7 @@ def calibration_of(deflated: bytes) -> Calibration:
 
 @lru_cache(maxsize=AT_HAND)
 def _read(document: bytes) -> Calibration:
-    """The calibration that was written; frozen, so that the same one serves whoever reads it."""
+    """Reads a stored calibration; it is frozen, so that one object serves all readers."""
     return Calibration.from_dict(json.loads(document))
 
 
@@ -161,7 +162,7 @@ class SessionNoises(Queries):
         return self._session.scalar(select(SessionNoiseRow.session_id).filter_by(session_id=session)) is not None
 
     def get(self, session: str) -> BlockNoise | None:
-        """Of a session; None where it holds no rest, or it was not made yet."""
+        """The noise of a session; None where it holds no rest, or it was not made yet."""
         row = self._session.get(SessionNoiseRow, session)
         return None if row is None else BlockNoise.from_dict(json.loads(zlib.decompress(row.document)))
 

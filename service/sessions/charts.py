@@ -53,7 +53,7 @@ CONFIG: Json = {
 
 @dataclass(frozen=True)
 class Panel:
-    """One small chart: its heading, what it shows in words, and its data."""
+    """One small chart: its heading, its description in words, and its data."""
 
     title: str
     description: str
@@ -92,17 +92,17 @@ def specification(layers: "list[alt.Chart]", height: int) -> Json:
 
 
 def hints(titles: Mapping[str, str]) -> "list[alt.Tooltip]":
-    """What pointing at a mark shows: fields with their titles."""
+    """The tooltips of a mark: fields with their titles."""
     return [alt.Tooltip(field, title=title) for field, title in titles.items()]
 
 
 def x_scale(**options: Any) -> "alt.Scale":
-    """Over the range that x is given."""
+    """A scale over the range that x is given."""
     return alt.Scale(domain=[LEFT, RIGHT], **options)
 
 
 def y_scale(**options: Any) -> "alt.Scale":
-    """Over the range that y is given."""
+    """A scale over the range that y is given."""
     return alt.Scale(domain=[LOW, HIGH], **options)
 
 
@@ -137,7 +137,7 @@ HEIGHT = 130
 ROUNDING = 1e-12
 """m/s² or rad/s: a ten-millionth of a µg (°/h) is what doubles leave of a fit that meets every reading."""
 RUNS = ("direct", "flipped")
-"""Of a two-axis stand; a session without runs is drawn as the first."""
+"""Runs of a two-axis stand; a session without runs is drawn as the first."""
 BETA, ORDER = "beta", "order"
 """Names of the ways that every session with a stand, and every session, can be looked at."""
 BETA_RANGE, BETA_TICKS = [-12, 372], [0, 90, 180, 270, 360]
@@ -154,35 +154,35 @@ def shapes() -> "alt.Scale":
 
 @dataclass(frozen=True)
 class Across:
-    """What residuals are drawn against."""
+    """Variable against which residuals are drawn."""
 
     name: str
     heading: str
     title: str
-    """Of the axis, with its unit."""
+    """Title of the axis, with its unit."""
     values: Array
     """One a row of the session, shape (rows,), in the unit of the title: °, h, °C, or the row's number."""
 
 
 def by_angle(residuals: Residuals) -> Across | None:
-    """By β, 0 to 360°; None where the session had no stand."""
+    """The angle β, 0 to 360°, as the variable; None where the session had no stand."""
     if residuals.beta is None:
         return None
     return Across(BETA, "By the angle β of the head", "β, °", np.degrees(residuals.beta) % 360)
 
 
 def in_order(residuals: Residuals) -> Across:
-    """By the row's number, from 1."""
+    """The row's number, from 1, as the variable."""
     return Across(ORDER, "In the order measured", "row", np.arange(1.0, len(residuals.value) + 1))
 
 
 def ticks(name: str) -> dict[str, Any]:
-    """Of the axis that residuals are drawn against."""
+    """Ticks of the axis against which residuals are drawn."""
     return {"values": BETA_TICKS} if name == BETA else {"tickCount": 5}
 
 
 def zero_line() -> "alt.Chart":
-    """Where measured and simulated agree."""
+    """A line where measured and simulated agree."""
     chart: alt.Chart = (
         alt.Chart(alt.InlineData(values=[{"zero": 0}])).mark_rule(color="var(--muted)").encode(y="zero:Q")
     )
@@ -224,7 +224,7 @@ class Noise:
 
     @property
     def times(self) -> float | None:
-        """How many times the noise found is the stated one, at the sensor where most; None where it is not drawn."""
+        """Largest ratio of the noise found to the stated one among the sensors; None where it is not drawn."""
         most = float(self.growth.max(initial=1.0))
         return most if most > WIDER else None
 
@@ -345,7 +345,7 @@ def _filled(across: Across, unit: Measure, largest: float, *, wider: bool) -> Js
 
 @cache
 def _spec(name: str, title: str, *, wider: bool) -> Json:
-    """With blanks for the unit and the ranges; ``wider``: with the edges of the noise found."""
+    """The specification, with blanks for the unit and the ranges; ``wider``: with the edges of the noise found."""
     x, scale = alt.X("x:Q", title=title, axis=alt.Axis(**ticks(name)), scale=x_scale(nice=False)), y_scale()
     base = alt.Chart(alt.NamedData(name=DATA_FORM)).encode(x=x)
     band = base.transform_calculate(low="-datum.band").mark_area(color="var(--accent)", opacity=SHADES[name])

@@ -51,7 +51,7 @@ LABELS = dict(
 
 
 def charts_of_fit(calibration: Calibration) -> tuple[ChartSet, ...]:
-    """How model and readings agree; of a recording in service, how the sensors agree with one another."""
+    """Charts of the agreement of model and readings; for a recording in service, of the sensors with one another."""
     if calibration.parity is None:
         return residual_charts(calibration)
     return course_charts(ParityResult.from_dict(calibration.parity))
@@ -105,7 +105,7 @@ def _panel(result: ParityResult, name: str, drawn: tuple[Array, Array, float], u
 
 
 def _marks(faults: tuple[CourseFault, ...], name: str, end: float) -> Iterator[Json]:
-    """From when to when; what it is is written where it happens."""
+    """Beginning and end of each fault; its kind is written in the panel of the sensor."""
     for fault in faults:
         who = joined(", ", fault.suspects)
         label = say(LABELS[fault.kind], who=who) if name in fault.suspects else ""
@@ -115,7 +115,7 @@ def _marks(faults: tuple[CourseFault, ...], name: str, end: float) -> Iterator[J
 
 @cache
 def _spec() -> Json:
-    """With blanks for the unit, the texts and the ranges."""
+    """The specification, with blanks for the unit, the texts and the ranges."""
     x, scale = alt.X("x:Q", title=ACROSS, axis=alt.Axis(tickCount=5), scale=x_scale(nice=False)), y_scale()
     base = alt.Chart(alt.NamedData(name=DATA_FORM)).encode(x=x)
     faults = alt.Chart(alt.NamedData(name=FAULTS)).encode(x=alt.X("since:Q", title=ACROSS, scale=x_scale(nice=False)))
@@ -136,7 +136,7 @@ def _spec() -> Json:
 
 
 def _labels(faults: "alt.Chart") -> "list[alt.Chart]":
-    """Beside the moment, where there is more room."""
+    """Labels beside the moment, where there is more room."""
     look: Json = {"color": "var(--fail)", "fontWeight": "bold", "baseline": "top"}
     early = faults.transform_filter("!datum.late").mark_text(align="left", dx=4, **look)
     late = faults.transform_filter("datum.late").mark_text(align="right", dx=-4, **look)

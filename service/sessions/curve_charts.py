@@ -85,7 +85,7 @@ def _panel(name: str, T: Array, moved: Array, spread: Array, measure: Measure, o
 
 @cache
 def _spec() -> Json:
-    """With blanks for the unit and the ranges."""
+    """The specification, with blanks for the unit and the ranges."""
     x = alt.X("x:Q", title="°C", axis=alt.Axis(tickCount=5), scale=x_scale(nice=False))
     scale = y_scale()
     base = alt.Chart(alt.NamedData(name=DATA_FORM)).encode(x=x)

@@ -1,4 +1,4 @@
-"""Verdicts, and the decision on one parameter of one sensor with everything that it rests on."""
+"""Verdicts, and the decision on one parameter of one sensor with its whole basis."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -28,13 +28,13 @@ class Verdict(StrEnum):
 
 
 class Opening(StrEnum):
-    """How a session came to be a reference."""
+    """Way in which a session became a reference."""
 
     FIRST = "first"
     SERVICE = "service"
-    """The first after one."""
+    """The first session after a service."""
     CHOSEN = "chosen"
-    """By an engineer."""
+    """Chosen by an engineer."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,13 +71,13 @@ def nominal_factor_of(decisions: tuple[Decision, ...]) -> float:
 
 
 def steps_in(decisions: tuple[Decision, ...]) -> Steps:
-    """What was taken off for temperature, by sensor and parameter."""
+    """The corrections for temperature, by sensor and parameter."""
     rows = ((decision.sensor, decision.parameter, decision.temperature_correction) for decision in decisions)
     return {(sensor, parameter): taken for sensor, parameter, taken in rows if taken is not None}
 
 
 def worst_of(decisions: tuple[Decision, ...]) -> Decision | None:
-    """The decision that a session's verdict hangs on: the worst verdict, and of those the least margin."""
+    """The decision that sets a session's verdict: the worst verdict, and of those the least margin."""
     return max(decisions, key=badness, default=None)
 
 
@@ -92,13 +92,13 @@ class ServiceFault:
     """A sensor that fails within a recording in service, in words."""
 
     sensors: tuple[str, ...]
-    """Those that are out of tolerance: it, both that are exchanged, or each that could be it."""
+    """Sensors out of tolerance: the faulty one, both that are exchanged, or each that could be it."""
     place: str
     """The sensor; empty where it is not one alone."""
     what: str
-    """What it does, since when, and how large that is, as a clause."""
+    """Kind, start and size of the fault, as a clause."""
     remedy: str
-    """What to do about it, as a clause."""
+    """Remedy, as a clause."""
 
     @property
     def sentence(self) -> str:
@@ -116,20 +116,20 @@ class Judged:
     is_reference: bool
     """Whether later sessions are judged against it."""
     motions: tuple[CommonMotion, ...] = ()
-    """What all sensors did together since the reference."""
+    """Motions common to all sensors since the reference."""
     faults: tuple[ServiceFault, ...] = ()
     """Sensors that fail within a recording in service."""
 
     @property
     def verdict(self) -> Verdict:
-        """That of the worst decision; with a faulty sensor the unit fails, whatever has a tolerance."""
+        """Verdict of the worst decision; with a faulty sensor the unit fails, whatever has a tolerance."""
         if self.faults:
             return Verdict.FAIL
         return Verdict.UNDECIDABLE if self._worst is None else self._worst.verdict
 
     @property
     def worst(self) -> Decision | None:
-        """What the verdict hangs on; None when nothing was judged, as of a reference."""
+        """Decision that sets the verdict; None when nothing was judged, as for a reference."""
         return None if self.is_reference else self._worst
 
     @cached_property

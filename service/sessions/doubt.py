@@ -1,4 +1,4 @@
-"""Why a session cannot be as its file says, what would correct it, and what a verdict is reserved for."""
+"""Doubts about a session's file, their corrections, and the reservations of verdicts."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from service.sessions.decision import Verdict
 
 
 class Remedy(StrEnum):
-    """What a corrected file does to the first one."""
+    """Kinds of correction of a file."""
 
     READINGS = "readings"
     """The readings of some sensors, and their standard errors, times a factor."""
@@ -32,11 +32,11 @@ class FileCorrection:
     sensors: tuple[str, ...] = ()
     factor: float = 1.0
     unit: str = ""
-    """Which it is of, where that is what is corrected."""
+    """Unit of the session, where that is corrected."""
 
     @property
     def text(self) -> str:
-        """What it does, as the corrected file's notes say it."""
+        """The correction as stated in the corrected file's notes."""
         who = joined(" and ", self.sensors) if len(self.sensors) < 3 else f"{self.sensors[0]}–{self.sensors[-1]}"
         if self.remedy is Remedy.UNIT:
             return say("unit {unit}", unit=self.unit)
@@ -47,20 +47,20 @@ class FileCorrection:
 
 @dataclass(frozen=True)
 class Doubt:
-    """One thing that cannot be as the file says."""
+    """One doubt about a file: a value that cannot be as stated."""
 
     problem: str
     """Beyond what physics allows, with the numbers."""
     slip: str
-    """What has probably happened."""
+    """Probable cause."""
     correction: FileCorrection | None = None
-    """None where no factor and no exchange puts it right."""
+    """Correction of the file; None where no factor and no exchange puts it right."""
     stands_for: str | None = None
     """The session that this one counts twice with, and could stand for."""
 
     @property
     def text(self) -> str:
-        """In a sentence or two."""
+        """The doubt in a sentence or two."""
         remedy = (
             ""
             if self.correction is None
@@ -73,14 +73,14 @@ class Doubt:
 
 @dataclass(frozen=True)
 class Remedies:
-    """What would put a questioned session right."""
+    """Ways to put a questioned session right."""
 
     correction: str = ""
-    """What a corrected file would hold otherwise; empty where nothing is known."""
+    """Contents that a corrected file would change; empty where none is known."""
     stands_for: str | None = None
     """The session that it could stand for."""
     unit: str = ""
-    """Which it probably is of; empty where that is not in doubt."""
+    """Unit that was probably measured; empty where that is not in doubt."""
 
 
 def remedies_among(doubts: Iterable[Doubt]) -> Remedies:
@@ -92,16 +92,16 @@ def remedies_among(doubts: Iterable[Doubt]) -> Remedies:
 
 
 class DoubtKind(StrEnum):
-    """Why a verdict carries a reservation, in the order in which reservations are listed."""
+    """Reason for a reservation, in the order in which reservations are listed."""
 
     RECORD = "record"
-    """The file says something else than what was done."""
+    """The file states something else than was done."""
     NOT_CHECKED = "not-checked"
     """No causes could be looked for."""
     PENDING = "pending"
     """Causes are still being looked for: in the list for programs; people read it in the verdict."""
     TEMPERATURE = "temperature"
-    """It was measured far from the temperatures of the unit's reference and earlier sessions."""
+    """The session was measured far from the temperatures of the unit's reference and earlier sessions."""
     CAUSE = "cause"
     """A named cause is large beside the tolerance."""
     OTHER_MODEL = "other-model"
@@ -115,7 +115,7 @@ class DoubtKind(StrEnum):
 @answer
 @dataclass(frozen=True)
 class Reservation:
-    """One thing that speaks against taking a verdict as it stands."""
+    """One reason against taking a verdict as it stands."""
 
     kind: DoubtKind
     """`record`: the file is wrong. `not-checked`: no causes could be looked for. `pending`: they are still being looked
@@ -124,24 +124,24 @@ class Reservation:
     `other-model`: the verdict is another under a model that the readings leave standing. `unexplained`: so does
     structure that no known cause explains. `stated-errors`: the readings contradict the standard errors of the file."""
     text: str
-    """What is the matter, as a clause that stands after `but`."""
+    """Reason for the reservation, as a clause that stands after `but`."""
     advice: str
-    """What to do about it, as a clause."""
+    """Advice, as a clause."""
     sensors: tuple[str, ...] = ()
-    """That it concerns; empty where it concerns all, or none in particular."""
+    """Sensors that it concerns; empty where it concerns all, or none in particular."""
     cause: str | None = None
     """The named cause."""
     parameter: str | None = None
-    """Whose tolerance the size is held against."""
+    """Parameter against whose tolerance the size is held."""
     size: float | None = None
-    """In the tolerance's unit, SI; relative for a scale factor."""
+    """Size in the tolerance's unit, SI; relative for a scale factor."""
     uncertainty: float | None = None
     """Standard uncertainty of the size."""
     share: float | None = None
     """Size by tolerance."""
     verdict: Verdict | None = None
-    """That the session would have under the other model."""
+    """Verdict of the session under the other model."""
 
 
 Reservations = tuple[Reservation, ...] | None
-"""Of a verdict; None while causes are still being looked for."""
+"""Reservations of a verdict; None while causes are still being looked for."""

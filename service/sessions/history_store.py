@@ -1,7 +1,7 @@
-"""Parameters through time, one row a session, sensor and parameter, with what was decided of it.
+"""Parameters through time, one row a session, sensor and parameter, with the decision on it.
 
-Histories have thousands of points: their columns are read, not whole rows as objects, and of a decision only those that
-a point says.
+Histories have thousands of points: their columns are read, not whole rows as objects, and of a decision only the
+columns of a point.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -31,11 +31,11 @@ DECIDED = (
 )
 """The decision on a parameter, under the same model revision."""
 IS_JUDGED = ParameterRow.parameter.not_in(TERMS)
-"""Parameters that a calibration gives: the terms of noise stand beside them and are never judged."""
+"""Condition of the parameters of a calibration: the terms of noise are in the same table and are never judged."""
 
 
 class StoredPoint(NamedTuple):
-    """What a query of points selects, in the order of `POINT`; what was decided is None where nothing was."""
+    """Columns of a query of points, in the order of `POINT`; those of the decision are None where there is none."""
 
     session: str
     at: datetime
@@ -78,7 +78,7 @@ POINT = (
 
 
 def point_record(row: StoredPoint, *, raw: bool = False) -> HistoryPoint:
-    """A stored parameter with what was decided of it, or, ``raw``, with what the whole block did left in."""
+    """A stored parameter with the decision on it, or, ``raw``, with the common motion of the whole block left in."""
     seen = _LatestPoint(row, raw)
     value, u = seen.value, seen.u
     lower, upper = _band(row, value, u)
@@ -123,7 +123,9 @@ class _LatestPoint:
 
     @property
     def value(self) -> float | None:
-        """For the axis the angle from the reference, without the turn of the whole block unless it is to stay."""
+        """Value of the parameter; for the axis the angle from the reference, without the turn of the whole block unless
+        it is to stay.
+        """
         row = self.row
         if row.parameter != "axis" or row.verdict is None:
             return row.value
@@ -139,7 +141,7 @@ class _LatestPoint:
 
     @property
     def deviation(self) -> float | None:
-        """From the reference."""
+        """Change from the reference."""
         row = self.row
         if row.common is None or not self.raw:
             return row.deviation
@@ -157,12 +159,12 @@ class _LatestPoint:
 
     @property
     def _together(self) -> float:
-        """One sigma of what the whole block did, where that is left in."""
+        """One sigma of the common motion of the whole block, where that is left in."""
         return (self.row.common_sigma or 0.0) if self.raw else 0.0
 
 
 def _tolerance(row: StoredPoint) -> float | None:
-    """In the unit of the value: a scale's tolerance is relative to its reference."""
+    """The tolerance in the unit of the value: a scale's tolerance is relative to its reference."""
     if row.parameter != "scale" or row.tolerance is None:
         return row.tolerance
     return None if row.reference is None else row.tolerance * abs(row.reference)
@@ -176,7 +178,7 @@ def _axis(row: StoredPoint) -> tuple[float, float, float] | None:
 
 @dataclass(frozen=True)
 class HistoryQuery:
-    """Which part of a unit's history is wanted."""
+    """Part of a unit's history."""
 
     parameter: str | None = None
     sensor: str | None = None
@@ -185,16 +187,17 @@ class HistoryQuery:
     offset: int = 0
     limit: int = 10_000
     revision: int | None = None
-    """As computed under this model revision or the last one before it; None for what is in force."""
+    """Model revision, or the last one before it, of the calibrations; None for those in force."""
     newest: bool = False
     """Whether offset and limit count from the newest point back."""
     raw: bool = False
-    """Whether what the whole block did is left in."""
+    """Whether the common motion of the whole block is left in."""
     noise: bool | None = False
-    """Whether the terms of noise are wanted, not what is judged; None for both. One that is asked for by its name
-    always is."""
+    """Whether the terms of noise are wanted instead of the judged parameters; None for both. A parameter that is
+    requested by its name is always included.
+    """
     kind: str | None = None
-    """Of the sensors."""
+    """Kind of the sensors."""
 
 
 class History(Queries):
@@ -205,7 +208,9 @@ class History(Queries):
         self.insert_many(ParameterRow, [row for record, values in new for row in _rows(unit, record, values)])
 
     def drop(self, record: StoredSession) -> None:
-        """Takes out what a session gave under its model revision: a recording moves another calibration now."""
+        """Removes the judged parameters of a session under its model revision: a recording moves another calibration
+        now.
+        """
         conditions = (ParameterRow.session_id == record.id, ParameterRow.revision == record.revision)
         self._session.execute(delete(ParameterRow).where(*conditions, IS_JUDGED))
 
@@ -329,7 +334,7 @@ def _rows(unit: int, record: StoredSession, values: Iterable[ParameterValue]) ->
 
 
 def _parameter_value(row: Any) -> ParameterValue:
-    """Of a row of `ParameterRow`, or of its columns."""
+    """The value in a row of `ParameterRow`, or in its columns."""
     axis = None
     if row.axis_x is not None and row.axis_y is not None and row.axis_z is not None:
         axis = (row.axis_x, row.axis_y, row.axis_z)

@@ -32,7 +32,7 @@ def _condition(session: StoredSession) -> Condition:
 
 
 RUNS = ("direct", "flipped")
-"""By whether the head is turned over."""
+"""Names of the runs, by whether the head is turned over."""
 
 
 @dataclass(frozen=True)

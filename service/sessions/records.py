@@ -16,18 +16,18 @@ from service.sessions.doubt import Reservations
 from service.sessions.states import RecordState
 
 PARAMETERS = ("scale", "bias", "quadratic", "axis")
-"""What a calibration gives of every sensor."""
+"""Parameters of every sensor in a calibration."""
 ID_DIGITS = 20
 """Digits of the file's SHA-256: 80 bits; among a million sessions two share them with probability 4e-13."""
 
 
 ALL_PARAMETERS = (*PARAMETERS, "misalignment")
-"""With what only a turntable shows."""
+"""All parameters: these, and the one that only a turntable shows."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Marks:
-    """What is said of a session with yes or no, with its file or later; carried whole wherever it goes."""
+    """Yes-or-no marks of a session, set with its file or later; carried whole wherever it goes."""
 
     is_check: bool = False
     """Whether it is only a check, which moves no due date unless it is a reference."""
@@ -39,7 +39,7 @@ class Marks:
 
     @property
     def words(self) -> tuple[str, ...]:
-        """Those that are so, as addresses, forms and lists call them."""
+        """Marks that are set, by their names in addresses, forms and lists."""
         return tuple(word for word, name in MARKS.items() if getattr(self, name))
 
 
@@ -54,34 +54,34 @@ def marks_said(words: Collection[str]) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class _StoredSession:
-    """What is known of a stored session without what is said of it."""
+    """A stored session without its marks."""
 
     id: str
-    """The first 20 digits of the content's SHA-256."""
+    """Id of the session: the first 20 digits of the content's SHA-256."""
     unit: str
     """Serial number of the unit."""
     sha256: str
     """SHA-256 of the uploaded bytes."""
     filename: str
-    """What the file was called when it was uploaded."""
+    """Name of the file when it was uploaded."""
     size: int
     """Bytes."""
     programme: str
-    """How it was measured."""
+    """Programme of measurement."""
     stand: str | None
     """The stand, if one was used."""
     operator: str
-    """Who measured, as the file says."""
+    """Operator by the file."""
     notes: str
     """Notes of the file."""
     started_at: datetime
-    """When it was measured, with the offset from UTC that the file states; the upload's time if it does not say."""
+    """Start of the measurement, with the offset from UTC in the file; the upload's time where the file states none."""
     uploaded_at: datetime
-    """When it was uploaded, UTC."""
+    """Time of upload, UTC."""
     verdict: Verdict
     """The worst of the session's parameters."""
     reason: str
-    """Why the verdict is what it is, in one sentence."""
+    """Reason for the verdict, in one sentence."""
     is_reference: bool
     """Whether later sessions are judged against this one."""
     simulated: bool
@@ -93,7 +93,7 @@ class _StoredSession:
     reservations: Hidden[Reservations] = ()
     """Reservations of the verdict."""
     state: RecordState = RecordState.ACCEPTED
-    """Only an accepted session counts for its unit."""
+    """State of the record; only an accepted session counts for its unit."""
     superseded_by: str | None = None
     """The replacement of a superseded session."""
     temperature: Hidden[float | None] = None
@@ -110,12 +110,12 @@ class StoredSession(Marks, _StoredSession):
 
 @dataclass(frozen=True)
 class Digests:
-    """By which a session is recognised, whatever its file's bytes."""
+    """Digests by which a session is recognised, whatever its file's bytes."""
 
     content_digest: str
-    """Of everything that it says."""
+    """Digest of its whole content."""
     readings_digest: str
-    """Of its readings alone."""
+    """Digest of its readings alone."""
 
 
 @dataclass(frozen=True)
@@ -135,18 +135,18 @@ class ParameterValue:
 
 @dataclass(frozen=True)
 class _Receipt:
-    """What an upload is answered with, without what is said of the session."""
+    """Answer to an upload, without the session's marks."""
 
     id: str
     """The session's id, made from the content: the same bytes have the same id."""
     unit: str
     """Serial number of the unit."""
     verdict: Verdict
-    """Of the session: the worst of its parameters."""
+    """Verdict of the session: the worst of its parameters."""
     reason: str
-    """Why, in one sentence."""
+    """Reason for the verdict, in one sentence."""
     created: bool
-    """False when the same bytes were already stored."""
+    """Whether it is new; false when the same bytes were already stored."""
     is_reference: bool
     """Whether later sessions are judged against this one; then its own verdict is `undecidable`."""
     reservations: Hidden[Reservations] = None
@@ -154,30 +154,30 @@ class _Receipt:
     state: RecordState = RecordState.ACCEPTED
     """`questioned` where the file cannot be as it says; then it counts for nothing."""
     remark: str = ""
-    """What else must be known: that the unit is retired; empty where nothing is."""
+    """Further remark, such as that the unit is retired; empty where there is none."""
 
 
 @answer
 @dataclass(frozen=True)
 class Receipt(Marks, _Receipt):
-    """The answer to an upload; of what was stored before everything is as it was."""
+    """The answer to an upload; for an earlier stored file it states the session as it is."""
 
 
 class SessionOrder(StrEnum):
-    """What sessions are listed by; the date of measurement and the identifier order those that are alike."""
+    """Order of a list of sessions; equal ones are ordered by the date of measurement and the identifier."""
 
     MEASURED = "measured"
     """The newest first."""
     UPLOADED = "uploaded"
-    """The last that came first."""
+    """The latest upload first."""
     VERDICT = "verdict"
-    """Worst first."""
+    """The worst verdict first."""
     UNIT = "unit"
 
 
 @dataclass(frozen=True)
 class SessionQuery(ListQuery):
-    """Which sessions are wanted, and after or before which identifier."""
+    """Filter of sessions, and the identifier after or before which the list goes on."""
 
     text: str | None = None
     """Part of the unit's serial number, small and capital letters alike."""
@@ -194,7 +194,7 @@ class SessionQuery(ListQuery):
     is_reference: bool | None = None
     """Whether later sessions are judged against it; None where either will do."""
     reserved: bool = False
-    """Only those whose verdict has a reservation."""
+    """Whether only sessions whose verdict has a reservation are wanted."""
     order: SessionOrder = SessionOrder.MEASURED
 
 
@@ -206,7 +206,7 @@ class HistoryPoint:
     session: str
     """Id of the session."""
     at: datetime
-    """When it was measured, UTC."""
+    """Start of the measurement, UTC."""
     sensor: str
     """Name of the sensor."""
     kind: str
@@ -224,17 +224,17 @@ class HistoryPoint:
     reference: float | None
     """The value that it is judged against."""
     deviation: float | None
-    """From the reference, as it was judged: relative for scale, else SI."""
+    """Change from the reference, as it was judged: relative for scale, else SI."""
     expanded: float | None
     """U of the deviation, of both sessions."""
     tolerance: float | None
-    """In the unit of the value; null where it is not judged."""
+    """Tolerance in the unit of the value; null where it is not judged."""
     verdict: Verdict
     """The state of this parameter at this session."""
     is_reference: bool
     """Whether the session is one that later ones are judged against."""
     axis: tuple[float, float, float] | None
-    """For the axis: its components in block axes."""
+    """Components of the axis in block axes; null for other parameters."""
     revision: int = 0
     """Model revision that it was computed under; 0 is the baseline."""
 
@@ -246,7 +246,7 @@ class HistoryPoint:
 
 
 class DiagnosisState(StrEnum):
-    """What a diagnosis came to; not applicable: no causes are looked for in sessions of its programme."""
+    """Result of a diagnosis; not applicable: no causes are looked for in sessions of its programme."""
 
     NOTHING = "nothing wrong"
     NAMED = "named"
@@ -268,7 +268,7 @@ class DiagnosisSummary:
     state: DiagnosisState
     summary: str
     gain: str = ""
-    """What the named causes gain, in one sentence."""
+    """Gain from the named causes, in one sentence."""
 
 
 UNWEIGHED = "~"
@@ -299,7 +299,7 @@ class SensorNoiseSchema(BaseModel):
 
 
 class NoiseDocument(BaseModel):
-    """imu-noise/1: what the rests of a raw log say of its sensors."""
+    """imu-noise/1: noise of the sensors from the rests of a raw log."""
 
     format: str = Field(description="`imu-noise/1`.")
     rests: int = Field(description="How many rests.")

@@ -35,7 +35,7 @@ class ReceiptAnswer(SaidVerdict, Receipt):
     """The answer to an upload."""
 
     url: str
-    """Where the session can be read."""
+    """Address of the session."""
 
 
 @answer
@@ -45,12 +45,12 @@ class SaidSession(SaidVerdict, StoredSession):
 
 
 def said_session(session: StoredSession) -> SaidSession:
-    """With its verdict in words."""
+    """The session with its verdict in words."""
     return SaidSession(**said(session))
 
 
 class TemperatureCorrectionSchema(BaseModel):
-    """A change from the reference without what temperature is worth in it, by the law of the unit's sessions before."""
+    """A change from the reference without the effect of temperature, by the law of the unit's sessions before."""
 
     model_config = ConfigDict(from_attributes=True)
 
@@ -110,7 +110,7 @@ class DecisionSchema(BaseModel):
 
 
 class CommonMotionSchema(BaseModel):
-    """What the axes, or the scales, of all sensors of one kind did together since the reference."""
+    """Common motion of the axes, or of the scales, of all sensors of one kind since the reference."""
 
     model_config = ConfigDict(from_attributes=True)
 
@@ -133,17 +133,18 @@ class SessionReportAnswer(SaidSession):
     """One stored session with its decisions."""
 
     decisions: tuple[DecisionSchema, ...]
-    """Every judged parameter, sensor after sensor."""
+    """Decisions on every judged parameter, sensor after sensor."""
     common_motion: tuple[CommonMotionSchema, ...]
-    """What all sensors did together; empty for a reference and for sessions judged before this was kept."""
+    """Motions common to all sensors; empty for a reference and for sessions judged before they were kept."""
     stand_certificate_expired: bool
     """Whether the stand's own certificate had expired at the day of measurement: the verdict stands, its traceability
     does not."""
     traceability: Traceability
-    """What the numbers hang on."""
+    """Traceability of the session's results."""
     temperatures_covered: CoveredTemperatures | None = None
-    """That the unit's calibrations up to this one cover; null where there is no reference, or where its temperature was
-    not recorded."""
+    """Temperatures covered by the unit's calibrations up to this one; null where there is no reference, or where its
+    temperature was not recorded.
+    """
 
 
 class SessionPage(Paged):

@@ -1,4 +1,4 @@
-"""A session's file as it is sent, and what its sender states beside it."""
+"""A session's file as it is sent, and its sender's statements."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
@@ -11,7 +11,7 @@ from service.sessions.records import Marks
 
 @dataclass(frozen=True)
 class Replaced:
-    """The session that a corrected file supersedes, who says so and why."""
+    """The session that a corrected file supersedes, with the person and the reason."""
 
     session: str
     who: str
@@ -20,14 +20,14 @@ class Replaced:
 
 @dataclass(frozen=True, kw_only=True)
 class Stated(Marks):
-    """What a sender states of a file, beside what it holds; carried whole from the request to the stored session."""
+    """Statements of a sender on a file, besides its contents; carried whole from the request to the stored session."""
 
     replaces: Replaced | None = None
     mapping: Mapping[str, Any] | None = None
-    """How a table of a user-defined layout is read."""
+    """Mapping by which a table of a user-defined layout is read."""
 
     def stated(self) -> dict[str, Any]:
-        """Its fields by name, for another form of the same file."""
+        """The statements by name, for another form of the same file."""
         return {field.name: getattr(self, field.name) for field in fields(Stated)}
 
 
@@ -49,12 +49,12 @@ class Received(Stated):
     size: int
     """Bytes."""
     sha256: str
-    """Of the content."""
+    """SHA-256 of the content."""
     filename: str
-    """The last part of the sender's name, printable; only ever shown, never used as a path."""
+    """Last part of the sender's name for the file, printable; only ever shown, never used as a path."""
     at: datetime
     who: str
-    """That sent it."""
+    """Person who sent it."""
 
 
 @dataclass(frozen=True)
@@ -62,9 +62,9 @@ class Sent(Stated):
     """A file that was received whole and is still to be read."""
 
     place: str
-    """Its name among those that wait."""
+    """Name of the file among those that wait."""
     sha256: str
     size: int
     """Bytes."""
     account: str = ""
-    """As the audit trail names who sent it."""
+    """Sender's name in the audit trail."""

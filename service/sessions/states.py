@@ -1,4 +1,4 @@
-"""What became of a record, a session or a service, since it was received; by whom, when and why."""
+"""States of records, sessions and services, since they were received: by whom, when and why."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -9,18 +9,18 @@ from service.sessions.doubt import Remedies
 
 
 class RecordState(StrEnum):
-    """What is known of a unit is derived from its accepted records alone."""
+    """State of a record. Only accepted records count for a unit."""
 
     ACCEPTED = "accepted"
     QUESTIONED = "questioned"
-    """It cannot be as it says, until an engineer says that it is."""
+    """The record cannot be as it states, until an engineer confirms it."""
     WITHDRAWN = "withdrawn"
     SUPERSEDED = "superseded"
-    """It is superseded: by a corrected file, of another unit or of another date."""
+    """Another record replaces it: a corrected file, one of another unit or of another date."""
 
 
 class RecordKind(StrEnum):
-    """What has states."""
+    """Kinds of record with states."""
 
     SESSION = "session"
     SERVICE = "service"
@@ -28,7 +28,7 @@ class RecordKind(StrEnum):
 
 @dataclass(frozen=True)
 class Step:
-    """By whom, when and why something is done to a record."""
+    """Person, time and reason of a change of a record."""
 
     who: str
     at: datetime
@@ -44,18 +44,19 @@ class StateChange:
     record: Hidden[str]
     """The session's id, or the service's number."""
     state: RecordState
-    """What it is from then on."""
+    """State from then on."""
     who: str
-    """Who said so; `imu-health` for the service itself."""
+    """Person who changed it; `imu-health` for the service itself."""
     at: datetime
-    """When, UTC."""
+    """Time of the change, UTC."""
     why: str
-    """Why."""
+    """Reason for the change."""
     superseded_by: str | None = None
     """The replacement of a superseded session."""
     remedies: Hidden[Remedies | None] = None
-    """What would put a questioned one right, as far as was known then; None of others, and of lines from before this
-    was kept."""
+    """Ways to put a questioned record right, as far as known then; None for others, and for lines from before they were
+    kept.
+    """
 
 
 @dataclass(frozen=True)

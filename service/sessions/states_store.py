@@ -56,7 +56,7 @@ class States(Queries):
         self._session.flush()
 
     def choices(self, unit: int) -> tuple[ReferenceChoice, ...]:
-        """What engineers chose, oldest first."""
+        """The references that engineers chose, oldest first."""
         query = select(ReferenceChoiceRow).where(ReferenceChoiceRow.unit_id == unit).order_by(ReferenceChoiceRow.id)
         return tuple(ReferenceChoice(r.session_id, r.who, r.at, r.why) for r in self._session.scalars(query))
 
@@ -67,6 +67,6 @@ def state_change(row: RecordStateRow) -> StateChange:
 
 
 IS_ACCEPTED = SessionRow.state == RecordState.ACCEPTED
-"""Sessions that tell of their unit."""
+"""Condition of sessions that count for their unit."""
 IS_BREAK = ServiceRow.state == RecordState.ACCEPTED
 """Services that begin an epoch."""

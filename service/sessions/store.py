@@ -44,7 +44,7 @@ from service.types.tables import UnitTypeRow
 from service.units.tables import ServiceRow, UnitRow
 
 NOT_JUDGED = ""
-"""What the verdict rests on of a session that is still to be judged, or judged again."""
+"""Basis of the verdict of a session that is still to be judged, or judged again."""
 
 
 def is_waiting(basis: InstrumentedAttribute[str | None]) -> ColumnElement[bool]:
@@ -93,7 +93,7 @@ class Sessions(Queries):
         return page.forward(session_record(*row) for row in self._session.execute(page.cut(session_rows())))
 
     def block(self, id: str) -> str:
-        """What a session measured: the block's kind."""
+        """The kind of the block that a session measured."""
         return self._session.execute(select(SessionRow.block).where(SessionRow.id == id)).scalar_one()
 
     def reference(self, unit: int, block: str, at: datetime, programmes: tuple[str, ...] = CALIBRATIONS) -> str | None:
@@ -116,7 +116,7 @@ class Sessions(Queries):
         self.insert_many(SessionRow, ({**values, **more},))
 
     def mark(self, id: str, **said: bool | str | None) -> None:
-        """Writes what is said of a session."""
+        """Writes marks and statements on a session."""
         self._session.execute(update(SessionRow).where(SessionRow.id == id).values(**said))
         self._session.expire_all()
 
@@ -180,7 +180,7 @@ class Sessions(Queries):
         return tuple(self._session.scalars(query.order_by(SessionRow.id).limit(limit)))
 
     def motions(self, id: str) -> tuple[CommonMotion, ...]:
-        """What all sensors of a session did together under the revision in force."""
+        """The common motions of a session under the revision in force."""
         rows = self._session.scalars(
             select(CommonMotionRow)
             .join(SessionRow, SessionRow.id == CommonMotionRow.session_id)
@@ -190,7 +190,7 @@ class Sessions(Queries):
         return tuple(motion_record(row) for row in rows)
 
     def decisions(self, id: str) -> tuple[Decision, ...]:
-        """What was decided of a session's parameters under the revision in force, in the order of its sensors."""
+        """The decisions on a session's parameters under the revision in force, in the order of its sensors."""
         rows = self._session.scalars(
             select(DecisionRow)
             .join(SessionRow, SessionRow.id == DecisionRow.session_id)
@@ -200,7 +200,7 @@ class Sessions(Queries):
         return tuple(decision_record(row) for row in rows)
 
     def temperature_steps(self, ids: Collection[str]) -> dict[str, Steps]:
-        """What was taken off for temperature of sessions, of those of which anything was."""
+        """The corrections for temperature of sessions, by session; without those that have none."""
         row, taken = DecisionRow, DecisionRow.temperature_correction
         query = select(row.session_id, row.sensor, row.parameter, taken).join(
             SessionRow, (SessionRow.id == row.session_id) & (SessionRow.revision == row.revision)
@@ -263,7 +263,7 @@ def epoch_bounds(
 
 
 def worst_columns(worst: Decision | None) -> dict[str, str | float | None]:
-    """The decision that a verdict hangs on, as the store keeps it beside the verdict."""
+    """The columns of the decision that sets a verdict, stored beside the verdict."""
     if worst is None:
         return {"worst_sensor": None, "worst_parameter": None, "margin": None}
     return {"worst_sensor": worst.sensor, "worst_parameter": worst.parameter, "margin": worst.margin}
@@ -351,10 +351,10 @@ SESSIONS: Listing[SessionQuery] = Listing(
 
 
 def reservations_to_list(reservations: Sequence[Reservation]) -> list[Json] | None:
-    """Every reservation, or None where there are none."""
+    """The reservations as they are stored, or None where there are none."""
     return STORED.written(list(reservations)) or None
 
 
 def reservations_from_list(diagnosed: str | None, entries: list[Any] | None) -> Reservations:
-    """What `reservations_to_list` wrote; None where no diagnosis is stored yet."""
+    """Reads the output of `reservations_to_list`; None where no diagnosis is stored yet."""
     return None if diagnosed is None else tuple(STORED.read(Reservation, entry) for entry in entries or ())

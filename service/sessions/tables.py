@@ -127,7 +127,7 @@ class DecisionRow(Base):
 
 
 class CommonMotionRow(Base):
-    """What the axes, or the scales, of all sensors of one kind did together since the reference."""
+    """Common motion of the axes, or of the scales, of all sensors of one kind since the reference."""
 
     __tablename__ = "common_motions"
     session_id: Mapped[str] = mapped_column(ForeignKey("sessions.id"), primary_key=True)
@@ -153,7 +153,7 @@ class SessionNoiseRow(Base):
 
 
 class RecordStateRow(Base):
-    """What became of a session or a service, by whom, when and why; append-only, the last line is its state."""
+    """Changes of state of a session or a service, by whom, when and why; append-only, the last line is its state."""
 
     __tablename__ = "record_states"
     __table_args__ = (Index("ix_record_states_record", "kind", "record", "id"),)

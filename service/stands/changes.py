@@ -1,4 +1,4 @@
-"""Flow: the certificate of a stand's own calibration, which the numbers of every session on it hang on."""
+"""Flow: the certificate of a stand's own calibration, on which the numbers of every session on it rest."""
 
 from datetime import datetime
 

@@ -1,4 +1,4 @@
-"""The Digital Calibration Certificate of a stand (PTB's DCC 2 and 3, D-SI 1 and 2) → what the service keeps of it.
+"""Step: the Digital Calibration Certificate of a stand (PTB's DCC 2 and 3, D-SI 1 and 2) → the certificate as stored.
 
 The schema has no place for the last day of validity, and no names for the errors of a stand: the day is read from a
 statement whose name or `refType` speaks of validity or recalibration, an error from a quantity that is named, or
@@ -48,9 +48,9 @@ class ReadCertificate:
     """A certificate of a stand as its document states it."""
 
     certificate: StandCertificate
-    """What is kept of it."""
+    """The certificate as it is stored."""
     errors: tuple[StandError, ...]
-    """How well it knows each error of the stand; of others it is silent."""
+    """Errors of the stand whose uncertainty the document states."""
 
 
 def read_dcc(content: bytes, stand: str, valid_until: date | None) -> ReadCertificate:
@@ -99,7 +99,7 @@ def _day(text: str | None) -> date | None:
 
 
 def _stated_end(root: Element, issued: date) -> date | None:
-    """The last day of validity, of a statement with a day or a period; the earliest of several."""
+    """The last day of validity, by a statement with a day or a period; the earliest of several."""
     ends = []
     for statement in root.iterfind(".//{*}statement"):
         names = [name.text or "" for name in statement.iterfind("{*}name/{*}content")]
@@ -139,7 +139,7 @@ def _errors(root: Element, problems: list[Problem]) -> Iterator[StandError]:
 
 
 def _keys(quantity: Element) -> Iterator[str]:
-    """What a quantity may be: what it refers to, and of an angle its names."""
+    """The possible keys of a quantity: from its references and, for an angle, its names."""
     yield from (t.removeprefix("stand_") for t in quantity.get("refType", "").split() if t.startswith("stand_"))
     if _unit(quantity) in RADIANS:
         names = (name.text or "" for name in quantity.iterfind("{*}name/{*}content"))
@@ -162,7 +162,7 @@ def _sigma(quantity: Element) -> float:
 
 
 def _number(quantity: Element, paths: tuple[str, ...]) -> float | None:
-    """The first there is, finite."""
+    """The first number found, if it is finite."""
     text = next((found for path in paths if (found := quantity.findtext(path))), "nan")
     try:
         return value if isfinite(value := float(text)) else None

@@ -1,4 +1,4 @@
-"""The stands' own health, from what the units measured on them did together."""
+"""The stands' own health, from the motions common to the sensors of the units measured on them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -31,7 +31,7 @@ class _Found:
     kind: str
     quantity: str
     start: datetime
-    """Of the years."""
+    """Origin of the years."""
     state: StandState
 
     @property
@@ -64,9 +64,9 @@ class _Found:
 
 @lru_cache(maxsize=8)
 def _found(measured: tuple[MotionOnStand, ...]) -> tuple[_Found, ...]:
-    """What the motions of one quantity say of every stand; by years from the first of them.
+    """The states of all stands by the motions of one quantity; years count from the first of them.
 
-    Pages ask for it again and again between two uploads: what was worked out of the same motions is kept.
+    Pages ask for it again and again between two uploads: the result for the same motions is cached.
     """
     kind, quantity, start = measured[0].kind, measured[0].quantity, measured[0].at
     motions = [

@@ -1,4 +1,4 @@
-"""What is known of a stand's own health: frozen records, SI."""
+"""Records of stands: their use, their own health and their certificates; SI."""
 
 from dataclasses import dataclass
 from datetime import date, datetime
@@ -20,7 +20,7 @@ def _is_number(value: object) -> bool:
 
 @dataclass(frozen=True)
 class MotionOnStand:
-    """What all sensors of one block did together at one session on a stand."""
+    """Common motion of all sensors of one block at one session on a stand."""
 
     stand: str
     unit: str
@@ -44,21 +44,21 @@ class MotionOnStand:
 
 @dataclass(frozen=True)
 class StandUse:
-    """How much a stand is used."""
+    """Use of a stand."""
 
     stand: str
     sessions: int
-    """Accepted ones."""
+    """Number of accepted sessions."""
     units: int
-    """That they measured."""
+    """Units measured in them."""
     last_at: datetime | None
-    """Of the latest of them; None where none is accepted."""
+    """Start of the latest of them; None where none is accepted."""
 
 
 @answer
 @dataclass(frozen=True)
 class StandEvidence:
-    """What the units say of one quantity on one stand."""
+    """Evidence of the units on one quantity of one stand."""
 
     kind: str
     """`accelerometer` or `gyroscope`."""
@@ -75,13 +75,13 @@ class StandEvidence:
     sigma: float
     """Standard uncertainty of the size."""
     chi2: float
-    """How much better the units are explained with it than without, as chi-square."""
+    """Improvement of the units' fit by the shift, as chi-square."""
     p_value: float
     """Chance of as much when nothing shifted, all dates and stands considered."""
     units: int
-    """Units that tell of it."""
+    """Number of units with evidence on it."""
     agreeing: int
-    """Of them, that show the shift."""
+    """Units among them that show the shift."""
     has_shifted: bool
     """Whether it counts as a shift of the stand."""
 
@@ -89,7 +89,7 @@ class StandEvidence:
 @answer
 @dataclass(frozen=True)
 class StandSeating:
-    """How blocks are seated on a stand, from one mounting to the next."""
+    """Scatter of the seating of blocks on a stand, from one mounting to the next."""
 
     kind: str
     """`accelerometer` or `gyroscope`."""
@@ -111,24 +111,24 @@ class StandCondition:
     has_shifted: bool
     """Whether it now shifts every unit that is measured on it."""
     reason: str
-    """In one sentence."""
+    """Reason in one sentence."""
     evidence: tuple[StandEvidence, ...]
-    """Most evident, of every quantity that units tell of."""
+    """Most evident, for every quantity on which there is evidence."""
     shifts: tuple[StandEvidence, ...]
     """Every shift, also one that was taken back; oldest first."""
     seating: tuple[StandSeating, ...]
     """Scatter of mountings, of every quantity."""
     unreadable: tuple[str, ...]
-    """Sessions left out: what is stored of them cannot be used."""
+    """Sessions left out: their stored results cannot be used."""
 
 
 @dataclass(frozen=True)
 class KnownStand:
-    """How much a stand is used, and how it is."""
+    """Use and condition of a stand."""
 
     use: StandUse
     condition: StandCondition | None
-    """As it was last made; None where no session shows it."""
+    """Latest condition; None where no session shows it."""
 
 
 @answer
@@ -139,21 +139,21 @@ class StandCertificate:
     stand: str
     """Name of the stand."""
     number: str
-    """As printed on it."""
+    """Number as printed on it."""
     issued_by: str
     """The laboratory that calibrated the stand."""
     issued_on: date
-    """From this day on it speaks for the stand."""
+    """Day from which it holds for the stand."""
     valid_until: date
-    """The last day on which it holds."""
+    """Last day on which it holds."""
 
 
 @answer
 @dataclass(frozen=True)
 class StandError:
-    """How well a certificate knows one error of a stand."""
+    """Uncertainty of one error of a stand by its certificate."""
 
     name: str
-    """As in the session file's `stand.sigma_arcsec`."""
+    """Name as in the session file's `stand.sigma_arcsec`."""
     sigma: float
     """Standard uncertainty, rad."""

@@ -32,7 +32,7 @@ MOST = 4000
 
 
 class Stands(Queries):
-    """What stands do to the units that are measured on them."""
+    """Effects of stands on the units measured on them, and the stands' conditions."""
 
     def last_measured(self, stand: str, since: datetime) -> tuple[str, ...]:
         """Serial numbers of the units whose latest session was on a stand, at a time or later."""
@@ -45,15 +45,15 @@ class Stands(Queries):
         return tuple(self._session.scalars(query.order_by(UnitRow.serial)))
 
     def hold(self, stand: str) -> None:
-        """Held until the transaction ends: what is derived of it is written by one after another."""
+        """Holds a stand until the transaction ends, so that results derived of it are written one after another."""
         self._session.scalar(select(StandRow.id).where(StandRow.name == stand).with_for_update())
 
     def every(self) -> tuple[KnownStand, ...]:
-        """How much each stand is used and its own health, by name, in one query."""
+        """The use of each stand and its own health, by name, in one query."""
         return tuple(_known(*row) for row in self._session.execute(_stands().order_by(StandRow.name)))
 
     def one(self, stand: str) -> KnownStand:
-        """The same of one stand; NotFoundError where there is none of that name."""
+        """The use and the health of one stand; NotFoundError where there is none of that name."""
         found = self._session.execute(_stands().where(StandRow.name == stand)).one_or_none()
         if found is None:
             raise NotFoundError(
@@ -67,7 +67,7 @@ class Stands(Queries):
         return tuple(STORED.read(StandCondition, doc) for doc in self._session.scalars(query.order_by(StandRow.name)))
 
     def put_conditions(self, found: Sequence[StandCondition], at: datetime) -> None:
-        """Rewrites what is known of all stands."""
+        """Rewrites the conditions of all stands."""
         keys = {name: key for key, name in self._session.execute(select(StandRow.id, StandRow.name))}
         known = [keys[condition.stand] for condition in found]
         self._session.execute(delete(StandConditionRow).where(StandConditionRow.stand_id.not_in(known)))
@@ -164,7 +164,7 @@ class StandCertificates(Queries):
         return tuple(self.with_errors(stand))
 
     def with_errors(self, stand: str) -> dict[StandCertificate, tuple[StandError, ...]]:
-        """The same, each with what it states of the stand's errors: nothing where it was recorded by hand."""
+        """The certificates of a stand, each with the stated errors of the stand: none where it was recorded by hand."""
         query = (
             select(StandCertificateRow)
             .join(StandRow, StandRow.id == StandCertificateRow.stand_id)
@@ -180,7 +180,7 @@ class StandCertificates(Queries):
         return {certificate: errors[certificate] for certificate in _by_issue(recorded)}
 
     def known(self, stand: str) -> tuple[StandCertificate, ...]:
-        """The same of a stand that must be known."""
+        """The certificates of a stand, by day of issue; NotFoundError where the stand is unknown."""
         self._key(stand)
         return self.of_stand(stand)
 
@@ -190,7 +190,7 @@ class StandCertificates(Queries):
         return issued[-1] if issued else None
 
     def errors_on(self, stand: str, day: date) -> tuple[StandError, ...]:
-        """What the certificate of a day states of the stand's errors."""
+        """The errors of the stand as stated by the certificate in force on a day."""
         issued = [errors for certificate, errors in self.with_errors(stand).items() if certificate.issued_on <= day]
         return issued[-1] if issued else ()
 
@@ -214,7 +214,7 @@ class StandCertificates(Queries):
 
 
 def _by_issue(recorded: Sequence[StandCertificate]) -> tuple[StandCertificate, ...]:
-    """Of one number the last that was recorded; of one day of issue the last recorded comes last."""
+    """The last recorded certificate of each number, by day of issue; of one day, the last recorded comes last."""
     last = {certificate.number: place for place, certificate in enumerate(recorded)}
     return tuple(sorted((recorded[place] for place in sorted(last.values())), key=lambda c: c.issued_on))
 

@@ -1,4 +1,4 @@
-"""The tables of stands: what units show of them, their conditions and certificates."""
+"""The tables of stands: the effects that units show, the stands' conditions and certificates."""
 
 from datetime import date, datetime
 
@@ -18,7 +18,7 @@ class StandRow(Base):
 
 
 class StandUnitRow(Base):
-    """How many accepted sessions of a unit were measured on a stand."""
+    """Number of accepted sessions of a unit on a stand."""
 
     __tablename__ = "stand_units"
     unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"), primary_key=True, autoincrement=False)
@@ -27,7 +27,7 @@ class StandUnitRow(Base):
 
 
 class StandTallyRow(Base):
-    """How many accepted sessions were measured on a stand, of how many units."""
+    """Number of accepted sessions on a stand, and of their units."""
 
     __tablename__ = "stand_tallies"
     stand_id: Mapped[int] = mapped_column(ForeignKey("stands.id"), primary_key=True, autoincrement=False)
@@ -41,7 +41,7 @@ class StandConditionRow(Base):
     __tablename__ = "stand_conditions"
     stand_id: Mapped[int] = mapped_column(ForeignKey("stands.id"), primary_key=True, autoincrement=False)
     shifts: Mapped[int]
-    """How many are known, those that were taken back too."""
+    """Number of known shifts, ended ones included."""
     document: Mapped[Json]
     made_at: Mapped[datetime]
 

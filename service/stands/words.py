@@ -1,4 +1,4 @@
-"""What the units measured on a stand show of it, and whether it may be used, in words."""
+"""Condition of a stand by the units measured on it, and its permitted use, in words."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ JUDGED = "The units are judged without this effect."
 def reason_of(
     evidence: Sequence[StandEvidence], shifts: Sequence[StandEvidence], seating: Sequence[StandSeating]
 ) -> str:
-    """What the stand does to every block, since when, what to do, and how blocks are seated anyway."""
+    """The effect of the stand on every block, since when, advice, and the usual scatter of seating."""
     if not shifts:
         return joined(" ", (STEADY, *_seating(seating))) if evidence else TOO_FEW
     lasting = [shift for shift in shifts if shift.until is None]
@@ -30,7 +30,7 @@ def reason_of(
 
 
 def _shift(shift: StandEvidence) -> str:
-    """What it does, or did, on how many units it was seen, and when."""
+    """The effect of a shift, the number of units that show it, and its dates."""
     seen = say("found with {agreeing} of {units} units", agreeing=shift.agreeing, units=shift.units)
     when = say("since {since}", since=day_of(shift.since))
     if shift.until is not None:
@@ -76,18 +76,18 @@ NOT_YET = "Its certificate is dated {issued}, in the future: until then sessions
 HOLDS = "Sessions on this stand are traceable until {until}."
 EXPIRED = "Its certificate expired on {until}: traceability of sessions after that day is interrupted."
 SOON = timedelta(days=30)
-"""In which a laboratory can still have a stand calibrated before its certificate ends."""
+"""Time in which a laboratory can still have a stand calibrated before its certificate ends."""
 
 
 @dataclass(frozen=True)
 class StandWord:
-    """What the crew does with a stand today, and why."""
+    """Permitted use of a stand today, and the reason."""
 
     key: str
     """Name of the icon and the style."""
     word: str
     advice: str
-    """What to do."""
+    """Action for the crew."""
 
 
 READY = StandWord("pass", "Ready to use", "No recorded objection.")
@@ -96,7 +96,7 @@ NOT_STATED = StandWord("undecidable", "Usable, traceability not stated", "Record
 CHECK = StandWord("conditional-fail", "Check before use", "Check stand and fixture before a unit is mounted.")
 EXPIRED_TODAY = StandWord("fail", "Not traceable today", "Have the stand calibrated, or record its new certificate.")
 WORDS = (EXPIRED_TODAY, CHECK, NOT_STATED, SOON_OVER, READY)
-"""Worst first."""
+"""Words, worst first."""
 
 
 ERRORS = {
@@ -110,7 +110,7 @@ ERRORS = {
 
 
 def error_in_words(error: StandError) -> tuple[str, str]:
-    """Which error of the stand, and ``±0.40 arcsec``, ± U."""
+    """Name of the stand's error, and ``±0.40 arcsec``, ± U."""
     return ERRORS[error.name], "±" + in_words(ACCELEROMETER, "axis", COVERAGE * error.sigma)
 
 
@@ -121,7 +121,7 @@ def held(certificates: Sequence[StandCertificate], today: date) -> StandCertific
 
 
 def certificate_in_words(certificates: Sequence[StandCertificate], today: date) -> str:
-    """What sessions of today would hang on."""
+    """The state of the certificate on which sessions of today would rest."""
     latest = held(certificates, today)
     if latest is None:
         return say(NOT_YET, issued=day_of(certificates[0].issued_on)) if certificates else NONE
@@ -138,7 +138,7 @@ def stand_word(
 
 
 def condition_in_words(condition: StandCondition | None, *, is_pending: bool) -> str:
-    """What the units measured on it show; ``is_pending``: it is being worked out."""
+    """The condition by the units measured on it; ``is_pending``: it is being worked out."""
     if is_pending and (condition is None or not condition.evidence):
         return PENDING
     return TOO_FEW if condition is None else condition.reason

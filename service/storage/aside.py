@@ -14,13 +14,13 @@ from service.storage.folders import make_folder, named_in, written_whole
 FOLDER = "aside"
 """Next to the folders of the uploads, whose names are two hexadecimal digits."""
 RETENTION = timedelta(hours=12)
-"""Since the last access: a mapping is finished on the same day."""
+"""Time since the last access: a mapping is finished on the same day."""
 MOST = 10
-"""Of one account: a new one replaces the oldest."""
+"""Most tables of one account: a new one replaces the oldest."""
 MOST_BYTES = 1024**3
-"""Of all accounts."""
+"""Most bytes of all accounts."""
 OWNER_DIGITS = 16
-"""Of the hash of a login, which may hold any character."""
+"""Digits of the hash of a login, which may hold any character."""
 
 
 def set_aside(files: Files, owner: str, content: Content, now: datetime) -> str:

@@ -24,7 +24,7 @@ ACCOUNT = String(300).with_variant(String(260), "sqlite")
 
 
 class AuditRow(Base):
-    """Who did what when, with a hash of the line and the previous one; the database refuses changes."""
+    """Action of a person or the service, with a hash of the line and the previous one; the database refuses changes."""
 
     __tablename__ = "audit"
     id: Mapped[int] = mapped_column(primary_key=True)
@@ -48,22 +48,22 @@ WRITTEN = "audit"
 @answer
 @dataclass(frozen=True)
 class AuditLine:
-    """Who did what when."""
+    """One action in the audit trail."""
 
     id: int
     """Number of the line."""
     at: datetime
-    """When, UTC."""
+    """Time of the action, UTC."""
     who: str
-    """As they said, or as their account is named."""
+    """Person as stated in the request, or by the name of the account."""
     account: str
     """Account that was signed in, with the token that acted for it."""
     action: str
-    """What was done."""
+    """Action."""
     subject: str
-    """To what: a session, a unit, a type, a stand, an account."""
+    """Subject of the action: a session, a unit, a type, a stand, an account."""
     details: Json
-    """What before, what after and why, as far as the action has them."""
+    """State before and after, and the reason, as far as the action has them."""
     hash: str
     """SHA-256 of this line and of the one before it."""
 
@@ -74,7 +74,7 @@ class AuditCheck:
     """Whether the trail is as it was written."""
 
     lines: int
-    """How many there are."""
+    """Number of lines."""
     last: str
     """Hash of the last line; kept elsewhere, it shows later that none was cut off."""
     broken: int | None
@@ -84,7 +84,7 @@ class AuditCheck:
 
 
 class Audit(Queries):
-    """Who did what when."""
+    """The audit trail: actions of people and the service."""
 
     def __init__(self, store: Store) -> None:
         super().__init__(store)
@@ -120,7 +120,7 @@ class Audit(Queries):
         return tuple(_line(row) for row in self._session.scalars(query))
 
     def who_did(self, action: str, subject: str, times: Sequence[datetime]) -> dict[datetime, str]:
-        """Who did something to a subject, by time; other times have no key."""
+        """The persons who did an action on a subject, by time; other times have no key."""
         query = select(AuditRow.at, AuditRow.who).where(
             AuditRow.action == action, AuditRow.subject == subject, AuditRow.at.in_(times)
         )

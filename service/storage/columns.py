@@ -35,7 +35,7 @@ class UtcDateTime(TypeDecorator[datetime]):
     cache_ok = True
 
     def process_bind_param(self, value: datetime | None, dialect: Dialect) -> datetime | None:
-        """To UTC; a naive time is a mistake of the caller."""
+        """Converts a time to UTC; a naive time is a mistake of the caller."""
         if value is None:
             return None
         if value.tzinfo is None:
@@ -74,7 +74,7 @@ class Sentence(TypeDecorator[str]):
 
 
 class LongSentence(Sentence):
-    """The same, declared as TEXT."""
+    """A message with its parts, declared as TEXT."""
 
     impl = Text
     cache_ok = True

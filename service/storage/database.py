@@ -1,6 +1,6 @@
 """The database: the only place that commits. One transaction a request.
 
-`service.kit.lock_order` defines the order of locks, and what is not done while one is held.
+`service.kit.lock_order` defines the order of locks, and the work that is not done while one is held.
 """
 
 from collections.abc import Iterator
@@ -40,7 +40,7 @@ class Database:
         self._writing_engine = self.engine.execution_options(**{WRITES: True})
 
     def acting(self, account: str) -> "Database":
-        """The same database; its audit lines name an account."""
+        """The database for an account: its audit lines name it."""
         database = copy(self)
         database._account = account
         return database
@@ -95,7 +95,7 @@ class Database:
 
 
 def unfit(revision: str | None) -> str | None:
-    """Why this version cannot work with a revision; None for the one that it needs."""
+    """The reason why this version cannot work with a revision; None for the one that it needs."""
     needed = head_revision()
     if revision == needed:
         return None

@@ -98,7 +98,9 @@ def _preparing(waits: Waits) -> Callable[[DBAPIConnection, ConnectionPoolEntry],
 
 
 def _write_ahead(connection: sqlite3.Connection, end: float) -> None:
-    """When several processes open a new file at once, SQLite refuses the change of journal mode to all but one."""
+    """Sets the journal mode of a new file. When several processes open it at once, SQLite refuses the change to all but
+    one.
+    """
     while True:
         try:
             connection.execute("PRAGMA journal_mode=WAL").close()

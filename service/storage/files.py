@@ -23,7 +23,7 @@ def content_hash(content: Content) -> str:
 
 
 def file_hash(path: Path) -> str:
-    """The same of a file, without holding it in memory."""
+    """The SHA-256 of a file, hexadecimal, without holding it in memory."""
     with path.open("rb") as file:
         return file_digest(file, "sha256").hexdigest()
 
@@ -77,7 +77,7 @@ class Files:
         return content
 
     def content(self, digest: str) -> bytes | Path:
-        """The same; for a long file its path, after its bytes were checked."""
+        """The bytes of a stored file; for a long file its path, after its bytes were checked."""
         with self._found(digest):
             if self.path(digest).stat().st_size <= IN_MEMORY:
                 return self.read(digest)

@@ -125,7 +125,7 @@ class Space:
 
     @property
     def too_little(self) -> str | None:
-        """Why no upload is accepted; None while there is room."""
+        """Reason why no upload is accepted; None while there is room."""
         if self.free >= self.least:
             return None
         return say(

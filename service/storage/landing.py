@@ -32,7 +32,7 @@ class Landing:
         self._waiting, self._hash = bytearray(), hashlib.sha256()
         self.size = 0
         self.start = b""
-        """The first bytes, from which the format is recognised."""
+        """First bytes, from which the format is recognised."""
 
     @property
     def is_due(self) -> bool:
@@ -100,7 +100,7 @@ class Landings:
         self._all: list[Landing] = []
 
     def new(self) -> Landing:
-        """For one more file."""
+        """A place for one more file."""
         self._all.append(Landing(self._folder))
         return self._all[-1]
 

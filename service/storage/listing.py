@@ -1,7 +1,7 @@
-"""Lists: what narrows them, what orders them, and from which entry on they are read.
+"""Lists: their filters, their orders, and the entry from which they are read.
 
-A page of a list begins after an entry, not after a number of them: it costs the same however far one reads, and what
-changes meanwhile moves nothing (keyset paging).
+A page of a list begins after an entry, not after a number of them: it costs the same however far one reads, and changes
+meanwhile move nothing (keyset paging).
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -26,21 +26,21 @@ class Key:
     is_falling: bool = False
     """Whether the largest comes first."""
     nulls_first: bool | None = None
-    """Where entries without it come; None where every entry has it."""
+    """Whether entries without it come first; None where every entry has it."""
     stays: bool = False
     """Whether it orders entries that are otherwise alike, and does so backwards too."""
     known: Callable[[Any], Any] | None = None
-    """Its value of an entry by the entry's name; None where the entry is looked up."""
+    """Value of an entry by the entry's name; None where the entry is looked up."""
 
     @property
     def turned(self) -> "Key":
-        """The same read backwards."""
+        """The key read backwards."""
         nulls_first = None if self.nulls_first is None else not self.nulls_first
         return replace(self, is_falling=not self.is_falling, nulls_first=nulls_first)
 
     @property
     def order(self) -> ColumnElement[Any]:
-        """As a query takes it."""
+        """The key as a term of a query's order."""
         order: ColumnElement[Any] = self.column.desc() if self.is_falling else self.column.asc()
         if self.nulls_first is None:
             return order
@@ -65,11 +65,11 @@ class PageQuery:
 
     query: ListQuery
     keys: tuple[Key, ...]
-    """In the direction of reading: what comes before an entry is read backwards from it."""
+    """Keys in the direction of reading: entries before another are read backwards from it."""
     conditions: tuple[ColumnElement[bool], ...]
 
     def cut(self, rows: Select[*Columns]) -> Select[*Columns]:
-        """Its rows only, in its order."""
+        """The rows of the page, in its order."""
         narrowed = self.ordered(rows.where(*self.conditions))
         return narrowed.offset(self.query.offset).limit(self.query.limit)
 
@@ -84,17 +84,17 @@ class PageQuery:
 
 @dataclass(frozen=True)
 class Listing(Generic[Wanted]):
-    """How a list is read from the store."""
+    """Rules for reading a list from the store."""
 
     name: Any
     """The column that an entry is named by where a list goes on from it."""
     keys: Callable[[Wanted], tuple[Key, ...]]
-    """What each order goes by; no two entries have the same."""
+    """Columns of each order; no two entries have the same values."""
     conditions: Mapping[str, Callable[[Any], ColumnElement[bool]]]
-    """What a field of a query narrows the list to, where the query asks for anything but the field's default."""
+    """Conditions by field of a query, where it has another value than the field's default."""
 
     def page(self, session: Session, rows: Select[*tuple[Any, ...]], wanted: Wanted) -> PageQuery:
-        """What a query asks for; one more query where the list goes on from an entry that must be looked up."""
+        """The page for a query; one more query where the list goes on from an entry that must be looked up."""
         named = wanted.after if wanted.before is None else wanted.before
         keys = self.keys(wanted)
         place = None if named is None else self._place(session, rows, keys, named)

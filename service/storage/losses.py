@@ -1,4 +1,4 @@
-"""What a downgrade to an earlier schema would delete: it is done, counted, and rolled back."""
+"""Losses by a downgrade to an earlier schema: it is done, counted, and rolled back."""
 
 from dataclasses import dataclass
 
@@ -19,7 +19,7 @@ class Loss:
 
 
 def losses(url: str, revision: str) -> tuple[Loss, ...]:
-    """What a downgrade would delete; the database stays as it is."""
+    """The rows and values that a downgrade would delete; the database stays as it is."""
     with alone(url) as connection:
         before = {table.name: table for table in tables_of(connection)}
         rows = {name: _rows(connection, table) for name, table in before.items()}

@@ -57,13 +57,13 @@ def downgrade(url: str, revision: str) -> None:
 
 
 def raise_to(connection: Connection, revision: str) -> None:
-    """The same within a transaction of the caller."""
+    """Upgrades the schema to a revision within a transaction of the caller."""
     with _known_revisions(connection, revision):
         command.upgrade(migrations(connection), revision)
 
 
 def take_back(connection: Connection, revision: str) -> None:
-    """The same within a transaction of the caller."""
+    """Downgrades the schema to a revision within a transaction of the caller."""
     with _known_revisions(connection, revision):
         command.downgrade(migrations(connection), revision)
 

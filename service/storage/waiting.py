@@ -14,7 +14,7 @@ from service.storage.folders import is_name, make_folder, named_durably, named_i
 FOLDER = "waiting"
 """Next to the folders of the uploads, whose names are two hexadecimal digits."""
 JOB_DELAY = timedelta(hours=1)
-"""How long a file may exist before its job is stored: a commit takes a moment."""
+"""Longest time from a file's arrival to its job's commit, which takes a moment."""
 MISSING = "The received file was deleted or changed on the disk of the service. Nothing was stored: upload it again."
 
 
@@ -46,7 +46,7 @@ def whole_file(files: Files, digest: str, places: Sequence[str]) -> Path:
 
 
 def drop_waiting(files: Files, place: str) -> None:
-    """Removes what is left of it; an invalid name is none of ours."""
+    """Removes what is left of a waiting file; an invalid name is ignored."""
     if not is_name(place):
         return
     with disk_faults():

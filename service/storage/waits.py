@@ -69,20 +69,22 @@ class Waits:
     """Seconds after which the database counts as unavailable."""
 
     lock: float = 10.0
-    """For a lock held by another transaction."""
+    """Timeout for a lock held by another transaction, s."""
     statement: float | None = 30.0
-    """For one statement, on PostgreSQL; None for no limit."""
+    """Timeout for one statement, on PostgreSQL, s; None for no limit."""
     connect: float = 5.0
-    """For a connection."""
+    """Timeout for a connection, s."""
 
 
 def waits_of(patience: float) -> Waits:
-    """From one setting: the timeout of a lock; three times this for a statement, and half of it for connecting."""
+    """The timeouts from one setting: it holds for a lock, three times this for a statement, and half of it for
+    connecting.
+    """
     return Waits(lock=patience, statement=3 * patience, connect=patience / 2)
 
 
 PATIENT = Waits(lock=600.0, statement=None)
-"""For migrations, backups and restoring: another one may be running, and a large table takes minutes."""
+"""Timeouts of migrations, backups and restoring: another one may be running, and a large table takes minutes."""
 
 
 def connect_within(waits: Waits, arguments: dict[str, Any]) -> psycopg.Connection[Any]:
@@ -117,7 +119,7 @@ class ServerFrozen(psycopg.OperationalError):
 
 
 def _until(work: PQGen[Any], end: float) -> Generator[Any, Any, Any]:
-    """The same work, which ends with an error after its deadline."""
+    """The work, ended with an error after its deadline."""
     try:
         state = next(work)
         while True:

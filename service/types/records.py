@@ -41,9 +41,9 @@ class UnitType:
     nominal_scales: tuple[float, ...]
     """Reading unit per m/s² (rad/s)."""
     tolerances: Tolerances
-    """Of the sensors of the block's own kind."""
+    """Tolerances of the sensors of the block's own kind."""
     gyro_tolerances: Tolerances | None
-    """Of the gyros of a block of accelerometers."""
+    """Tolerances of the gyros of a block of accelerometers."""
     revision: int
     """Counts up with every change of tolerances; decisions name theirs."""
     maximum_interval_days: float = 365.0
@@ -51,7 +51,7 @@ class UnitType:
     flag_share: float = 0.3
     """Part of the tolerance from which on a change within it has a flag; a smaller one is a remark."""
     temperature_laws: tuple[TypeLaw, ...] = ()
-    """What the temperature laws of its units are alike in, as far as it is in force."""
+    """Temperature laws common to the type's units, as far as in force."""
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ class TypeUse:
 
     units: int
     verdicts: dict[Verdict, int]
-    """Of units with an accepted session; every verdict is a key."""
+    """Number of units with an accepted session, by verdict; every verdict is a key."""
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ class LatestSession:
 
     unit: str
     key: int
-    """Of the unit."""
+    """Key of the unit."""
     session: str
     started_at: datetime
     block: str
@@ -109,31 +109,31 @@ class VerdictChange:
     session: str
     """Id of its latest session."""
     before: Verdict
-    """As it is stored."""
+    """Verdict as it is stored."""
     after: Verdict
-    """Under the other tolerances."""
+    """Verdict under the other tolerances."""
     sensor: str
-    """The sensor that it hangs on; empty where nothing would be judged."""
+    """Sensor that sets it; empty where nothing would be judged."""
     parameter: str
-    """The parameter that it hangs on."""
+    """Parameter that sets it."""
     reason: str
-    """Why, in one sentence."""
+    """Reason for the other verdict, in one sentence."""
 
 
 @answer
 @dataclass(frozen=True)
 class TolerancePreview:
-    """What other tolerances would change."""
+    """Effect of other tolerances on the verdicts of a type's units."""
 
     units: int
     """Units of the type with a session that counts."""
     judged: int
-    """Those whose latest session was judged by the other tolerances."""
+    """Units whose latest session was judged by the other tolerances."""
     references: int
-    """Those whose latest session is judged against nothing."""
+    """Units whose latest session is judged against nothing."""
     recordings: int
-    """Those whose latest session is a recording in service that no calibration stands beside."""
+    """Units whose latest session is a recording in service without a calibration to compare it with."""
     beyond: int
-    """Those that were not looked at, because there are so many."""
+    """Units that were not examined, because there are so many."""
     changes: tuple[VerdictChange, ...]
     """Units that would have another verdict, the worst first."""

@@ -26,7 +26,7 @@ GYROSCOPE_DEFAULTS = Tolerances(scale=1e-3, bias=0.05 * pi / 180 / 3600, quadrat
 """1000 ppm, 0.05 °/h, not judged, 120″."""
 NOT_JUDGED = Tolerances(None, None, None, None)
 DEFAULTS = {ACCELEROMETER: ACCELEROMETER_DEFAULTS, GYROSCOPE: GYROSCOPE_DEFAULTS}
-"""By kind of sensor."""
+"""Default tolerances by kind of sensor."""
 
 
 def named_only(name: str) -> UnitType:

@@ -55,7 +55,7 @@ class UnitTypes(Queries):
         return bool(self._session.scalars(named.values(**block).returning(UnitTypeRow.id)).all())
 
     def _set_first(self, unit_type: UnitType) -> None:
-        """The first tolerances of a type that only had a name, by which nothing was judged."""
+        """Sets the first tolerances of a type that only had a name, by which nothing was judged."""
         first = self._session.get_one(ToleranceRow, (self._row(unit_type.name).id, 1))
         gyro = unit_type.gyro_tolerances
         first.tolerances, first.gyro_tolerances = asdict(unit_type.tolerances), None if gyro is None else asdict(gyro)
@@ -69,7 +69,7 @@ class UnitTypes(Queries):
         return unit_type
 
     def find(self, name: str) -> UnitType | None:
-        """The same; None where there is none of that name."""
+        """The type of a name; None where there is none."""
         row = self._session.execute(_with_tolerances().where(UnitTypeRow.name == name)).one_or_none()
         return None if row is None else unit_type_of(*row)
 
@@ -217,7 +217,7 @@ def _use(counts: Mapping[int | None, int]) -> TypeUse:
 
 
 def _tolerances(row: ToleranceRow) -> tuple[Tolerances, Tolerances | None]:
-    """Of the block, and of the gyros of a mixed one."""
+    """The tolerances of the block, and of the gyros of a mixed one."""
     gyro = row.gyro_tolerances
     return Tolerances(**row.tolerances), None if gyro is None else Tolerances(**gyro)
 

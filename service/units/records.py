@@ -18,17 +18,17 @@ class Service:
     unit: str
     """Serial number of the unit."""
     at: datetime
-    """When it was done, UTC."""
+    """Time of the service, UTC."""
     kind: str
-    """What was done."""
+    """Kind of service, such as a repair."""
     note: str
-    """Why, what exactly."""
+    """Reason and details."""
     who: str = ""
-    """Who did it."""
+    """Person who did it."""
     sensor: str = ""
     """The sensor that it concerns; empty for the whole unit."""
     state: RecordState = RecordState.ACCEPTED
-    """One that was withdrawn is no break."""
+    """State of the service; a withdrawn one is no break."""
 
 
 @dataclass(frozen=True)
@@ -45,10 +45,10 @@ class NewService:
 
 
 class ForeseenKind(StrEnum):
-    """What a service would change."""
+    """Kinds of change by a service."""
 
     VERDICT = "verdict"
-    """Of a session."""
+    """Verdict of a session."""
     DUE = "next-calibration"
     FLAG = "flag"
 
@@ -56,16 +56,16 @@ class ForeseenKind(StrEnum):
 @answer
 @dataclass(frozen=True)
 class ForeseenChange:
-    """One thing that a service would change."""
+    """One change by a service."""
 
     kind: ForeseenKind
     """`verdict`, `next-calibration` or `flag`."""
     what: str
-    """In words: the session, the date or the flag."""
+    """Changed thing in words: the session, the date or the flag."""
     before: str
-    """As it is now, in words."""
+    """Present state, in words."""
     after: str
-    """As it would be."""
+    """State after the service, in words."""
     session: str | None = None
     """Id of the session, of a verdict."""
 
@@ -73,12 +73,12 @@ class ForeseenChange:
 @answer
 @dataclass(frozen=True)
 class ServicePreview:
-    """What a service would change; nothing is stored."""
+    """Changes that a service would bring; nothing is stored."""
 
     unit: str
     """Serial number of the unit."""
     at: datetime
-    """When the service was done, UTC."""
+    """Time of the service, UTC."""
     is_late: bool
     """Whether accepted sessions measured since are stored already."""
     changes: tuple[ForeseenChange, ...]
@@ -88,14 +88,14 @@ class ServicePreview:
 @answer
 @dataclass(frozen=True)
 class Withdrawal:
-    """Why a note no longer holds."""
+    """Withdrawal of a note or file."""
 
     at: datetime
-    """When it was withdrawn, UTC."""
+    """Time of the withdrawal, UTC."""
     who: str
-    """By whom."""
+    """Person who withdrew it."""
     why: str
-    """Why."""
+    """Reason for the withdrawal."""
 
 
 @answer
@@ -110,13 +110,13 @@ class Note:
     at: datetime
     """The date it is about, UTC."""
     text: str
-    """What is worth knowing."""
+    """Text of the note."""
     who: str
-    """Who said it."""
+    """Person who wrote it."""
     recorded_at: datetime
-    """When it was written, UTC."""
+    """Time of writing, UTC."""
     withdrawal: Withdrawal | None
-    """Why it no longer holds; null while it does."""
+    """Withdrawal with its reason; null while the note holds."""
     session: str | None = None
     """The session that it is about; null for the unit as a whole."""
 
@@ -130,15 +130,15 @@ class NewAttachment:
     sha256: str
     """SHA-256 of the bytes."""
     filename: str
-    """What the file was called, printable; only ever shown, never used as a path."""
+    """Printable name of the file; only ever shown, never used as a path."""
     size: int
     """Bytes."""
     text: str
-    """What it shows."""
+    """Description of its contents."""
     who: str
-    """Who attached it."""
+    """Person who attached it."""
     at: datetime
-    """When, UTC."""
+    """Time of attachment, UTC."""
 
 
 @answer
@@ -151,17 +151,17 @@ class Attachment(NewAttachment):
     unit: str
     """Serial number of the unit."""
     withdrawal: Withdrawal | None
-    """Why it is given out no more; null while it is."""
+    """Withdrawal with its reason; null while the file is given out."""
 
 
 @dataclass(frozen=True)
 class UnitEvents:
-    """Withdrawn ones too."""
+    """Notes, files and services of a unit or a session, withdrawn ones too."""
 
     notes: tuple[Note, ...]
     files: tuple[Attachment, ...]
     services: tuple[Service, ...]
-    """Of the unit."""
+    """Services of the unit."""
     changes: tuple[StateChange, ...]
     """Changes of state of these services, in order."""
 
@@ -178,24 +178,24 @@ NO_EVENTS = UnitEvents((), (), (), ())
 @answer
 @dataclass(frozen=True)
 class Customer:
-    """For whom a unit is calibrated, as its certificates name them."""
+    """Customer for whom a unit is calibrated, as its certificates name them."""
 
     name: str = ""
-    """Empty where it is not stated."""
+    """Name of the customer; empty where it is not stated."""
     address: str = ""
-    """Where they can be reached."""
+    """Contact address."""
 
 
 NO_CUSTOMER = Customer()
-"""Of a unit without a customer."""
+"""Customer of a unit without one."""
 
 
 class CustodyStep(StrEnum):
-    """What happened to a unit in the register."""
+    """Step of a unit in the register."""
 
     ENTERED = "entered"
     MOVED = "moved"
-    """To another place, or to somebody else."""
+    """The unit went to another place, or to another custodian."""
     RETIRED = "retired"
     RETURNED = "returned"
     """Put back into use."""
@@ -211,51 +211,51 @@ class Custody:
     unit: str
     """Serial number of the unit."""
     step: CustodyStep
-    """What happened: `entered`, `moved`, `retired` or `returned`."""
+    """Kind of change: `entered`, `moved`, `retired` or `returned`."""
     at: datetime
-    """When, UTC."""
+    """Time of the change, UTC."""
     who: str
-    """Who recorded it."""
+    """Person who recorded it."""
     location_before: str
-    """Where the unit was."""
+    """Location before."""
     location: str
-    """Where it is from then on."""
+    """Location from then on."""
     custodian_before: str
-    """Who had it."""
+    """Custodian before."""
     custodian: str
-    """Who has it from then on."""
+    """Custodian from then on."""
     remark: str
-    """Why, or what is worth knowing."""
+    """Reason or remark."""
     recorded_at: datetime
-    """When it was written, UTC."""
+    """Time of writing, UTC."""
 
 
 @answer
 @dataclass(frozen=True)
 class Registered:
-    """What the register says of a unit."""
+    """Entry of a unit in the register."""
 
     unit: str
     """Serial number of the unit."""
     unit_type: str
     """Name of its type."""
     owner: str
-    """To whom it belongs; empty where that is not stated."""
+    """Owner of the unit; empty where that is not stated."""
     location: str
-    """Where it is."""
+    """Location of the unit."""
     custodian: str
-    """Who has it."""
+    """Custodian of the unit."""
     note: str
-    """What is worth knowing."""
+    """Remark on the unit."""
     registered_at: datetime | None
-    """When it was entered, UTC; null of a unit that came with its first session."""
+    """Time of entry, UTC; null for a unit that came with its first session."""
     retired_at: datetime | None
-    """Since when it is retired, UTC; null while it is in use."""
+    """Time of retirement, UTC; null while it is in use."""
 
 
 @dataclass(frozen=True)
 class NewEntry:
-    """What somebody enters of a unit; None leaves a field as it is."""
+    """New or changed entry of a unit; None leaves a field as it is."""
 
     serial: str
     unit_type: str | None = None
@@ -266,14 +266,14 @@ class NewEntry:
 
     @property
     def stated(self) -> dict[str, str]:
-        """What is to be written to the unit itself, by column."""
+        """The values to be written to the unit itself, by column."""
         known = {"owner": self.owner, "location": self.location, "custodian": self.custodian, "remark": self.note}
         return {name: value for name, value in known.items() if value is not None}
 
 
 @dataclass(frozen=True)
 class Move:
-    """Where a unit goes or who gets it; None leaves it as it is."""
+    """Move of a unit to another place or custodian; None leaves it as it is."""
 
     location: str | None = None
     custodian: str | None = None

@@ -18,9 +18,9 @@ from service.kit.text import fault_of_text, with_plain_ends
 from service.units.records import NewEntry
 
 COLUMNS = ("serial", "unit_type", "owner", "location", "custodian", "note")
-"""What a table may state; the first is required."""
+"""Possible columns of a table; the first is required."""
 LEFT = ("retired_on",)
-"""In what is exported; it is left as it is."""
+"""Columns of an export that an import leaves as they are."""
 MOST_ROWS = 2_000
 MOST_COLUMNS = 50
 """So many that a table may have others beside those of the register, which are named in its refusal."""

@@ -68,7 +68,7 @@ class Attachments(Queries):
     """Attachments by unit and session; a row is written once."""
 
     def add(self, unit: int, new: NewAttachment) -> int:
-        """Stores what is known of an attached file and returns its number."""
+        """Stores the description of an attached file and returns its number."""
         values = dict(vars(new))
         row = AttachmentRow(unit_id=unit, session_id=values.pop("session"), **values)
         self._session.add(row)
@@ -116,11 +116,11 @@ class SaidOf(Queries):
     """Remarks, attached files and services, withdrawn ones too."""
 
     def unit(self, serial: str) -> UnitEvents:
-        """Of a unit as a whole, and files of its sessions; oldest first."""
+        """Notes and files of a unit as a whole, and files of its sessions; oldest first."""
         return self._said(serial, UnitRow.id == NoteRow.unit_id, UnitRow.id == AttachmentRow.unit_id)
 
     def session(self, unit: str, id: str) -> UnitEvents:
-        """Of one session of a unit; in the order in which it was said."""
+        """Notes and files of one session of a unit; in the order of recording."""
         return self._said(unit, NoteRow.session_id == id, AttachmentRow.session_id == id)
 
     def _said(self, serial: str, of_note: ColumnElement[bool], of_file: ColumnElement[bool]) -> UnitEvents:

@@ -1,4 +1,4 @@
-"""Units by serial number, the services that were done to them, and the register: where each is and who has it."""
+"""Units by serial number, their services, and the register: location and custodian of each."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
@@ -35,7 +35,7 @@ class Units(Queries):
         return self._session.scalar(select(UnitRow.simulated).where(UnitRow.serial == serial, HAS_SESSION))
 
     def set_simulated(self, serial: str, simulated: bool) -> None:
-        """Records what a unit's sessions are from now on."""
+        """Records whether a unit's sessions are simulated or measured from now on."""
         statement = update(UnitRow).where(UnitRow.serial == serial, UnitRow.simulated.is_not(simulated))
         self._session.execute(statement.values(simulated=simulated))
         self._session.info.pop(("simulated", serial), None)
@@ -48,7 +48,7 @@ class Units(Queries):
         return previous
 
     def customer(self, serial: str) -> Customer:
-        """For whom a unit is calibrated."""
+        """The customer for whom a unit is calibrated."""
         row = self._session.execute(
             select(UnitRow.customer, UnitRow.customer_address).where(UnitRow.serial == serial)
         ).one_or_none()
@@ -105,7 +105,7 @@ class Units(Queries):
         return key
 
     def hold(self, serial: str) -> int:
-        """The same of a unit that must be there."""
+        """The key of a unit, held until the transaction ends; NotFoundError where there is none."""
         key = self.held(serial)
         if key is None:
             raise NotFoundError("There is no unit {serial}.", serial=repr(serial))
@@ -176,7 +176,7 @@ class Services(Queries):
         return tuple(service_record(row, owner) for row, owner in self._session.execute(query))
 
     def breaks(self, unit: int) -> tuple[datetime, ...]:
-        """When the epochs of a unit begin, its first one apart, in order."""
+        """The beginnings of a unit's epochs, its first one apart, in order."""
         query = select(ServiceRow.at).where(ServiceRow.unit_id == unit, IS_BREAK)
         return tuple(sorted(set(self._session.scalars(query))))
 
@@ -204,14 +204,14 @@ class Register(Queries):
     """Entries by serial number."""
 
     def get(self, serial: str) -> Registered:
-        """What is known of one unit."""
+        """The entry of one unit; NotFoundError where there is none."""
         found = self.find((serial,))
         if not found:
             raise NotFoundError("There is no unit {serial}.", serial=repr(serial))
         return found[serial]
 
     def find(self, serials: Sequence[str]) -> dict[str, Registered]:
-        """The same of those of some units that there are, by serial number."""
+        """The entries of the units that exist among some, by serial number."""
         rows = self._session.execute(_entries().where(UnitRow.serial.in_(serials)))
         return {row.serial: register_entry(row, unit_type) for row, unit_type in rows}
 
@@ -221,11 +221,11 @@ class Register(Queries):
         return tuple(register_entry(row, unit_type) for row, unit_type in rows)
 
     def measured(self, serials: Sequence[str]) -> frozenset[str]:
-        """Those of some units of which a session was ever stored."""
+        """The units among some for which a session was ever stored."""
         return frozenset(self._session.scalars(select(UnitRow.serial).where(UnitRow.serial.in_(serials), HAS_SESSION)))
 
     def put(self, unit: int, new: NewEntry, now: datetime) -> None:
-        """Writes what is stated of a unit; from now on it is in the register."""
+        """Writes the entry of a unit; from now on it is in the register."""
         self._write(unit, new.stated)
         entered = update(UnitRow).where(UnitRow.id == unit, UnitRow.registered_at.is_(None))
         self._session.execute(entered.values(registered_at=now))
@@ -259,7 +259,7 @@ class Register(Queries):
         self._session.flush()
 
     def history(self, serial: str) -> tuple[Custody, ...]:
-        """Where a unit was and who had it, the latest first."""
+        """Locations and custodians of a unit, the latest first."""
         query = select(CustodyRow).join(UnitRow, UnitRow.id == CustodyRow.unit_id).where(UnitRow.serial == serial)
         rows = self._session.scalars(query.order_by(CustodyRow.at.desc(), CustodyRow.id.desc()))
         return tuple(_line(row, serial) for row in rows)
@@ -270,7 +270,7 @@ def _entries() -> Select[UnitRow, str]:
 
 
 def register_entry(row: UnitRow, unit_type: str) -> Registered:
-    """What a unit's row says."""
+    """The entry from a unit's row."""
     return copied(Registered, row, unit=row.serial, unit_type=unit_type, note=row.remark)
 
 

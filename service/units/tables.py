@@ -25,12 +25,12 @@ class UnitRow(Base):
     custodian: Mapped[str] = mapped_column(String(200), server_default="")
     remark: Mapped[str] = mapped_column(String(2000), server_default="")
     registered_at: Mapped[datetime | None]
-    """When it was entered in the register; None of a unit that came with its first session only."""
+    """Time of entry in the register; None for a unit that came with its first session only."""
     retired_at: Mapped[datetime | None]
 
 
 class CustodyRow(Base):
-    """Where a unit went and who has it from then on; never changed."""
+    """Step of a unit in the register: its location and custodian from then on; never changed."""
 
     __tablename__ = "custody"
     id: Mapped[int] = mapped_column(primary_key=True)
@@ -73,11 +73,13 @@ class NoteRow(Base):
     who: Mapped[str]
     recorded_at: Mapped[datetime]
     session_id: Mapped[str | None] = mapped_column(String(20), index=True)
-    """Of a note on a session; without a foreign key, which on SQLite would require rebuilding the table."""
+    """Session of the note, if it is on one; without a foreign key, which on SQLite would require rebuilding the
+    table.
+    """
 
 
 class WithdrawalRow(Base):
-    """Why a note no longer holds; append-only too."""
+    """Withdrawal of a note; append-only too."""
 
     __tablename__ = "note_withdrawals"
     note_id: Mapped[int] = mapped_column(ForeignKey("notes.id"), primary_key=True, autoincrement=False)
@@ -102,7 +104,7 @@ class AttachmentRow(Base):
 
 
 class AttachmentWithdrawalRow(Base):
-    """Why an attached file is no longer given out."""
+    """Withdrawal of an attached file."""
 
     __tablename__ = "attachment_withdrawals"
     attachment_id: Mapped[int] = mapped_column(ForeignKey("attachments.id"), primary_key=True, autoincrement=False)

@@ -114,7 +114,7 @@ After = Annotated[
 def list_uploads(
     store: Reading, text: FileName = None, refused: Refused = False, after: After = None, limit: Limit = 100
 ) -> UploadPage:
-    """Every file that came in, newest first, and what became of it; those that a job still works on apart."""
+    """Every file that came in, newest first, with its outcome; those in a running job are listed apart."""
     refusal = refusal_number(after or "")
     session = after if refusal is None else None
     query = ArrivalQuery(text, refused, after_session=session, after_refusal=refusal, limit=limit + 1)
@@ -130,7 +130,7 @@ def list_uploads(
 
 @router.get("/{id}", responses=errors(404, 422))
 def read_upload(id: UploadId, store: Reading) -> UploadSchema:
-    """What became of one file; of a refused one every fault with its place."""
+    """The outcome of one file; for a refused one, every fault with its place."""
     refusal, job = refusal_number(id), job_number(id)
     if job is not None:
         return _by_job(store, job)
@@ -186,7 +186,7 @@ LaterOf = Annotated[Later, Depends(_later)]
 
 
 class LayoutColumn(BaseModel):
-    """One column as it stands in the file."""
+    """One column as in the file."""
 
     heading: str = Field(description="As it stands, joined where there are two rows of headings.")
     cells: list[str] = Field(description="The first ones.")
@@ -220,7 +220,7 @@ UnitType = Annotated[Sought, Query(description="The last session of this stored 
 
 @layouts_router.post("/preview", responses=errors(400, 413, 422), openapi_extra=REQUEST_BODY)
 def preview_layout(file: FileOf, storage: StorageOf, unit: Unit = "", unit_type: UnitType = "") -> PreviewSchema:
-    """How a table of one's own layout is understood, or with `mapping` would be read. Nothing is stored."""
+    """The reading of a table of custom layout, by the recognised mapping or by `mapping`. Nothing is stored."""
     result = preview(
         storage, held(file.content), file.filename, mapping=file.mapping, unit=unit.strip(), unit_type=unit_type.strip()
     )

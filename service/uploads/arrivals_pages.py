@@ -45,9 +45,9 @@ class ArrivalRow:
     filename: str
     size: str
     condition: Condition | None
-    """Of the session; None for a refused file."""
+    """Condition of the session; None for a refused file."""
     said: str
-    """Its outcome."""
+    """Outcome of the upload."""
 
 
 @dataclass(frozen=True)

@@ -68,7 +68,7 @@ def remedies_of(store: Store, files: Files, id: str, states: Sequence[StateChang
 
 
 def _as_copy(reception: Reception, id: str, original: str, by: str, now: datetime) -> Receipt:
-    """Its readings are stored already under the right serial number: it is superseded by that session."""
+    """Supersedes a session whose readings are stored already under the right serial number by that other session."""
     replaced = Replaced(id, by, "corrected: its readings are stored under the right serial number")
     session, _ = supersede_session(reception.storage, deriving(reception, now), replaced, original)
     with reception.storage.database.reading() as store:

@@ -20,7 +20,7 @@ from service.uploads.layout.form import Carried
 
 
 class Became(StrEnum):
-    """What became of an uploaded file, what needs a person first."""
+    """Outcomes of an uploaded file, those that need a person first."""
 
     FAILED = "failed"
     OPEN = "open"
@@ -38,11 +38,11 @@ class FileOutcome:
     receipt: Receipt | None = None
     problems: tuple[Problem, ...] = ()
     diagnosis: DiagnosisLine | None = None
-    """None for a refused file."""
+    """Diagnosis in one line; None for a refused file."""
     pending: bool = False
     """Whether the diagnosis is being made."""
     is_table: bool = False
-    """Of custom layout: not read before its mapping is confirmed."""
+    """Whether it is a table of custom layout: not read before its mapping is confirmed."""
     carried: Carried | None = None
     """A table, for the page of its mapping."""
     job: Job | None = None
@@ -50,14 +50,14 @@ class FileOutcome:
 
     @property
     def became(self) -> Became:
-        """What became of the file."""
+        """Outcome of the file."""
         if self.receipt is not None:
             return Became.STORED if self.receipt.created else Became.BEFORE
         return Became.OPEN if self.is_table or (self.job is not None and self.job.is_open) else Became.FAILED
 
     @property
     def condition(self) -> Condition:
-        """Of the stored session; a refused file has none."""
+        """Condition of the stored session; a refused file has none."""
         if self.receipt is None:
             return condition_of(None)
         if self.receipt.state is RecordState.QUESTIONED:
@@ -93,7 +93,7 @@ class UploadsPage:
 
     @property
     def tally(self) -> dict[str, int]:
-        """Number of files by what became of them."""
+        """Number of files by outcome."""
         return {became: sum(o.became is became for o in self.outcomes) for became in Became}
 
 

@@ -1,4 +1,4 @@
-"""Preview of a table of custom layout: its mapping, what is missing, and its first rows."""
+"""Preview of a table of custom layout: its mapping, its missing facts, and its first rows."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -37,13 +37,13 @@ class Preview:
     mapping: Json
     """Complete: with the settings of the parser."""
     fingerprint: str
-    """Of the headings."""
+    """Fingerprint of the headings."""
     remembered: bool
     """Whether the mapping is that of an earlier file."""
     seen: Json
     """Result of the first look: headings, cells, sheets."""
     session: CalibrationSession | None
-    """As it would be stored; None while something is missing."""
+    """Session as it would be stored; None while something is missing."""
     problems: tuple[Problem, ...]
 
 

@@ -82,7 +82,7 @@ def receive(reception: Reception, file: SentFile, now: datetime) -> Receipt:
 
 
 def receive_all(reception: Reception, files: Sequence[SentFile], now: datetime) -> tuple[Receipt | RefusedError, ...]:
-    """The same for several files; the error of an unusable one is returned."""
+    """Receives several files; the error of an unusable one is returned."""
     outcomes = tuple(_stored_or_refused(reception, file, now) for file in files)
     for outcome in outcomes:
         if isinstance(outcome, Receipt):
@@ -199,7 +199,7 @@ class _Ready:
     made: MadeCalibration
     foreseen: Foreseen
     settled: str | None
-    """From `settled_by`, where its content is stored already."""
+    """Session from `settled_by`, where its content is stored already."""
 
 
 def _ready(storage: Storage, derivation: Deriving, received: Received, new: Calibrated) -> _Ready:

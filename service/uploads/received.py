@@ -62,7 +62,7 @@ class Arriving:
             raise HTTPException(BAD_REQUEST, str(getattr(fault, "message", "The form cannot be read."))) from fault
 
     def new(self) -> Landing:
-        """For one more file."""
+        """A place for one more file."""
         return self._place.new()
 
     @property
@@ -128,7 +128,7 @@ async def _attaching(request: Request, storage: StorageOf, _: UploadSlotOf) -> A
 
 
 AttachingOf = Annotated[Arriving, Depends(_attaching, scope="function")]
-"""The same for a file that is attached and never read."""
+"""Files of an upload that is attached and never read."""
 ArrivingOf = Annotated[Arriving, Depends(_arriving, scope="function")]
 """Receives uploads, which are removed after processing."""
 
@@ -164,7 +164,7 @@ async def _sent_attachment(arriving: AttachingOf, person: PersonOf) -> SentAttac
 
 
 def _fault(name: str, text: str) -> str:
-    """Why a field of the form cannot be stored; empty where it can."""
+    """The reason why a field of the form cannot be stored; empty where it can."""
     if len(text) > LONGEST[name]:
         return say("is longer than {longest} characters", longest=LONGEST[name])
     return fault_of_text(text, OF_LINES if name == "text" else OF_A_LINE) or ""
@@ -291,7 +291,7 @@ REQUEST_BODY: Json = {
 
 
 MOST_FILES = 200
-"""In one form: some years of sessions of a unit; limits the number of parts that the parser holds."""
+"""Most files in one form: some years of sessions of a unit; limits the number of parts that the parser holds."""
 
 
 async def _files(arriving: ArrivingOf) -> tuple[SentFile, ...]:

@@ -71,7 +71,7 @@ class ArrivalQuery:
     text: str | None = None
     """Part of the file's name, case-insensitive."""
     refused: bool = False
-    """Only refused ones."""
+    """Whether only refused uploads are wanted."""
     after_session: str | None = None
     after_refusal: int | None = None
     """Start of the list after this one; from the beginning where it does not exist."""

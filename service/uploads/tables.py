@@ -24,7 +24,7 @@ class RefusalRow(Base):
 
 
 class LayoutRow(Base):
-    """How files of a layout were read last, without what differs from session to session."""
+    """Latest mapping of files of a layout, without the fields that differ from session to session."""
 
     __tablename__ = "layouts"
     id: Mapped[int] = mapped_column(primary_key=True)

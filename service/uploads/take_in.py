@@ -104,7 +104,7 @@ class _JobHooks:
             _unless_ended(Jobs(store).read_on(self.id, done // KILOBYTE, times))
 
     def keeping(self) -> None:
-        """From now on it cannot be cancelled."""
+        """Marks the job as being stored: from now on it cannot be cancelled."""
         with self.storage.database.writing() as store:
             _unless_ended(Jobs(store).begin_storing(self.id))
 

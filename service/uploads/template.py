@@ -35,7 +35,7 @@ class Wording:
     key: Callable[[str], str]
     heading: Callable[[str], str]
     value: Callable[[str, Any], Any]
-    """Of a key or a column, by its English name."""
+    """Value of a key or a column, by its English name."""
     say: Callable[[str], str]
     """A hint or a warning."""
 
@@ -72,7 +72,7 @@ LIMITS = {
     "beta_deg": (-720, 720), "time_s": (0, 1e9), "temperature_c": (-100, 200), "latitude_deg": (-90, 90),
     "height_m": (-500, 9000), "gravity_m_s2": (9.7, 9.9), "alpha_deg": (-90, 90), "chi_deg": (-90, 90),
 }  # fmt: skip
-"""Of numbers, as in the reader."""
+"""Limits of numbers, as in the reader."""
 MOST_PLANNED = 500
 """Rows of a schedule that are included; not of a log."""
 ROOM = 1000
@@ -215,7 +215,7 @@ def _hint(name: str, document: Json) -> str:
 
 
 def _example_sheet(sheet: Worksheet, style: Style, document: Json) -> None:
-    """The first rows filled in, with example values next to them; ignored by an upload."""
+    """Writes a sheet with the first rows filled in, and example values next to them; ignored by an upload."""
     columns = _columns(document)
     _headings(sheet, style, document, list(columns))
     sheet.set_column(0, len(columns) + 2, 14)

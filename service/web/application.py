@@ -1,4 +1,4 @@
-"""What is set up at the start and is available to every request, as ``app.state.application``."""
+"""Objects set up at the start and available to every request, as ``app.state.application``."""
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager

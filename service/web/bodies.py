@@ -43,8 +43,9 @@ SLOWEST = 4000
 LATE_SECONDS = 1.0
 """Seconds: a timeout later than this was delayed by the service itself, and is not the client's fault."""
 CLOSE = {"Connection": "close"}
-"""With the answer to a body that does not arrive. A body that is too large is read and discarded: closing the
-connection before would lose the answer."""
+"""Header of the answer to a body that does not arrive. A body that is too large is read and discarded: closing the
+connection before would lose the answer.
+"""
 
 
 class Unfinished(HTTPException):

@@ -48,11 +48,11 @@ def _language(request: Request) -> Language:
 
 
 LanguageOf = Annotated[Language, Depends(_language)]
-"""Language of what is made for people."""
+"""Language of texts for people."""
 
 
 def limited(request: Request, limit: int, *, is_form: bool) -> Request:
-    """The same request with a body limited to ``limit`` bytes, whatever length it announced."""
+    """The request with a body limited to ``limit`` bytes, whatever length it announced."""
     limit_in_all = limit + (ENVELOPE if is_form else 0)
     received = 0
 

@@ -19,7 +19,7 @@ SENTENCES = {
     "date_from_datetime_parsing": "Input should be a valid date or datetime, {error}",
     "url_parsing": "Input should be a valid URL, {error}",
 }
-"""By type of error; all others have no parts."""
+"""Sentences by type of error; all others have no parts."""
 COUNTED = {
     "string_too_short": (
         "String should have at least {n} character",

@@ -18,7 +18,9 @@ from service.sessions.decision import Verdict
 
 NUMBER = re.compile(r"\s*[-+]?[\d._]+(e[-+]?\d+)?\s*", re.IGNORECASE)
 FEWEST_MS = 100_000_000_000
-"""In milliseconds a day of March 1973, long before any measurement; in seconds the year 5138."""
+"""Least number taken for milliseconds: in milliseconds a day of March 1973, long before any measurement; in seconds the
+year 5138.
+"""
 MOST_MS = 7_258_118_400_000
 """The start of 2200, the latest date stored."""
 
@@ -134,7 +136,7 @@ class Window:
 
 
 class Body(BaseModel, extra="forbid"):
-    """What is sent: a field that nobody knows is refused."""
+    """Body of a request: an unknown field is refused."""
 
 
 class Paged(BaseModel):

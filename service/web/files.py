@@ -82,7 +82,7 @@ def as_arrow(table: "pl.DataFrame", filename: str) -> Response:
 
 
 WRITERS = {"csv": as_csv, "parquet": as_parquet, "arrow": as_arrow}
-"""By the value of the parameter `format`."""
+"""Writers by the value of the parameter `format`."""
 
 
 def as_table(table: "pl.DataFrame", form: str, name: str) -> Response:

@@ -53,7 +53,7 @@ class _TranslatedLoader(FileSystemLoader):
 READ_BY_PEOPLE = ("text/html", "application/problem+json")
 """Media types that depend on the language; all others are for programs, or their routes decide."""
 PAPERS = ("application/pdf", "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet")
-"""In the language of the requester, or stored in that of the approver."""
+"""Media types of answers in the language of the requester, or stored in that of the approver."""
 
 
 class LanguageHeaders:

@@ -1,4 +1,4 @@
-"""What a visitor asked a list for: it stands in the address, so that it can be kept, sent on and gone back to."""
+"""Filter and order of a list. They are part of its address, so that it can be kept, sent on and gone back to."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
@@ -14,30 +14,31 @@ Words = Annotated[Sought, AfterValidator(str.strip)]
 """Part of a name."""
 Entry = TypeVar("Entry")
 LAST = ("sort", "page", "after", "before")
-"""What stands at the end of an address."""
+"""Parameters at the end of an address."""
 PLACE = LAST[1:]
-"""Which page of the list is shown."""
+"""Parameters of the page of the list."""
 
 
 def one_of(known: Collection[str]) -> AfterValidator:
-    """Leaves out what nobody knows."""
+    """Leaves out unknown values."""
     return AfterValidator(lambda asked: asked if asked in known else "")
 
 
 def address_of(path: str, asked: Mapping[str, object]) -> str:
-    """A path with what is asked of it; empty parts are left out."""
+    """The address of a path with its query; empty parts are left out."""
     kept = {name: value for name, value in asked.items() if value}
     return f"{path}?{urlencode(kept)}" if kept else path
 
 
 class ListView(BaseModel):
-    """A list that is narrowed and ordered by its address: every field is a part of it, in the order of the address.
-    Every field is empty where nothing is asked, and where it asks for what nobody knows."""
+    """A list that is filtered and ordered by its address: every field is a part of it, in the order of the address. A
+    field is empty where the address has no value for it, or an unknown one.
+    """
 
     model_config = ConfigDict(frozen=True)
     PATH: ClassVar[str]
     ORDERS: ClassVar[Mapping[str, str]]
-    """What the list can be ordered by, in words; by the first where nothing else is asked."""
+    """Possible orders of the list, with their names in words; the first is the default."""
     PAGE_SIZE: ClassVar[int] = 20
     """Entries on a page: three screens at most."""
 
@@ -51,7 +52,7 @@ class ListView(BaseModel):
     @field_validator("sort")
     @classmethod
     def known_order(cls, asked: str) -> str:
-        """The order that is asked for, or the first where nobody knows it."""
+        """The requested order, or the first where that is unknown."""
         return asked if asked.removeprefix("-") in cls.ORDERS else next(iter(cls.ORDERS))
 
     @field_validator("before")
@@ -62,7 +63,7 @@ class ListView(BaseModel):
 
     @property
     def order(self) -> str:
-        """What the list is ordered by."""
+        """Column by which the list is ordered."""
         return self.sort.removeprefix("-")
 
     @property

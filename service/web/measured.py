@@ -19,7 +19,7 @@ FAILED = 500
 
 
 class RequestLog:
-    """Identifies and times every request; outermost, so that it records what was sent."""
+    """Identifies and times every request; outermost, so that it records the answer as sent."""
 
     def __init__(self, app: ASGIApp, metrics: Metrics) -> None:
         self.app = app

@@ -9,7 +9,7 @@ from estimator.json_object import Json
 
 
 class Fault(BaseModel):
-    """One thing that is wrong with what was sent."""
+    """One fault of a request."""
 
     field: str = Field(description="Where: a field of the file, a column, or a part of the request.")
     row: int | None = Field(description="Row of the table, counted from 1; null when it is not in one row.")
@@ -17,7 +17,7 @@ class Fault(BaseModel):
 
 
 class ProblemDocument(BaseModel):
-    """Why a request was not carried out."""
+    """Reason why a request was not carried out."""
 
     model_config = ConfigDict(
         json_schema_extra={

@@ -44,7 +44,7 @@ class ProblemPage:
     problems: tuple[Problem, ...]
     advice: str
     request_id: str
-    """Of the request in the log; empty where it has none."""
+    """Id of the request in the log; empty where it has none."""
 
 
 def problem_page(problem: Json) -> ProblemPage:
@@ -66,7 +66,7 @@ def problem_page(problem: Json) -> ProblemPage:
 def unexpected_pages(app: FastAPI) -> None:
     """Answers unexpected errors with a page too: that handler is outside of every middleware.
 
-    The server closes the connection after it, and the answer says so, lest the next request is sent into it.
+    The server closes the connection after it, and the answer states that, lest the next request is sent into it.
     """
     answer = app.exception_handlers[Exception]
 

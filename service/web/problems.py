@@ -114,7 +114,9 @@ def _http_error(request: Request, error: Exception) -> ProblemAnswer:
 
 
 def _cut_off(_: Request, error: Exception) -> ProblemAnswer:
-    """Nobody reads this answer; it is one line in the log and no fault of the service."""
+    """The answer to a request that was cut off: nobody reads it; it is one line in the log and no fault of the
+    service.
+    """
     return problem(400, CUT_OFF)
 
 
@@ -143,6 +145,6 @@ def _every(routes: Iterable[Any]) -> Iterator[Any]:
 
 
 def _unexpected(request: Request, error: Exception) -> ProblemAnswer:
-    """The one boundary for unexpected errors."""
+    """Answers an unexpected error; the one boundary for them."""
     log.error("request failed", request_id=request.state.request_id, exc_info=error)
     return problem(500, UNEXPECTED, id=request.state.request_id)

@@ -1,4 +1,4 @@
-"""From a frozen context to a page: the one Jinja environment and the globals of every template."""
+"""A frozen context → a page: the one Jinja environment and the globals of every template."""
 
 import json
 from collections.abc import Iterable, MutableMapping
@@ -70,7 +70,7 @@ def _csrf_field(context: Context) -> Markup:
 
 @pass_context
 def _csrf_query(context: Context) -> str:
-    """The same, for the address of an upload."""
+    """The query of an upload's address with the CSRF token; empty without one."""
     csrf = _person(context).csrf
     return f"?csrf={csrf}" if csrf else ""
 
@@ -131,7 +131,7 @@ def render(request: Request, template: str, page: Any, status: int = 200) -> HTM
 
 
 def _address(scope: MutableMapping[str, Any], language: Language) -> str:
-    """Of the same page in another language; of the answer to a form, the fleet's."""
+    """The address of the same page in another language; for the answer to a form, the fleet's."""
     if scope.get("method", "GET") not in ("GET", "HEAD"):
         return f"/?{urlencode({QUERY: language.value})}"
     asked_for = [pair for pair in parse_qsl(scope["query_string"].decode("latin-1")) if pair[0] != QUERY]

@@ -9,7 +9,7 @@ from service.web.problems import problem
 
 STOPPING = "The service is stopping. Nothing was stored; send this again in a few seconds."
 RETRY_AFTER = 5
-"""Seconds: about the time of a restart."""
+"""Seconds until a retry: about the time of a restart."""
 POLL_SECONDS = 0.05
 """Seconds between two checks for running requests."""
 STILL_ANSWERED = frozenset({"/healthz"})

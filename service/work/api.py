@@ -41,7 +41,7 @@ class FailedWorkPage(BaseModel):
 
 
 class RetriedSchema(BaseModel):
-    """What is tried again."""
+    """Amount of work that is tried again."""
 
     retried: int = Field(description="How many pieces of work.")
 
@@ -54,7 +54,7 @@ class NewReport(Body):
 
 
 class Cancelling(Body):
-    """Who cancels."""
+    """Cancellation of a job."""
 
     by: Text = Field("", description="Who cancels, where nobody signs in.")
 
@@ -65,7 +65,7 @@ class JobAnswer(Job):
     """Long work, as it stands."""
 
     problems: tuple[Fault, ...]
-    """Of an upload that was refused: every fault, where one job is read."""
+    """Faults of a refused upload, where one job is read."""
 
 
 class JobPage(BaseModel):
@@ -138,7 +138,7 @@ def ask_for_report(
 
 @router.get("/{id}", responses=errors(404, 422))
 def read_job(id: Number, store: Reading) -> JobAnswer:
-    """How far one job has come."""
+    """The progress of one job."""
     job = Jobs(store).get(id)
     return job_answer(job, () if job.refusal is None else Arrivals(store).refusal(job.refusal).problems)
 
@@ -149,7 +149,7 @@ def read_job(id: Number, store: Reading) -> JobAnswer:
     response_class=Response,
 )
 def download_result(id: Number, store: Reading, storage: StorageOf) -> Response:
-    """What a job made, while it is kept."""
+    """The file that a job made, while it is kept."""
     job = Jobs(store).get(id)
     content = file_of(storage.files, job)
     assert job.made is not None
@@ -158,7 +158,7 @@ def download_result(id: Number, store: Reading, storage: StorageOf) -> Response:
 
 @router.post("/{id}/cancel", responses=errors(400, 403, 404, 409, 422))
 def cancel(id: Number, asked: Cancelling, storage: StorageOf, person: PersonOf, now: Now) -> JobAnswer:
-    """Stop a job between two pieces of its work. What was done stays."""
+    """Stop a job between two pieces of its work. Finished pieces stay."""
     return job_answer(cancel_job(storage, id, person, person.signs(asked.by or CREW), now))
 
 

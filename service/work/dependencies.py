@@ -32,8 +32,8 @@ def _groups(request: Request) -> GroupReader:
 
 ReaderOf = Annotated[Reader, Depends(_reader)]
 GroupReaderOf = Annotated[GroupReader, Depends(_groups)]
-"""Reader of what groups of sessions show."""
+"""Reader of joint diagnoses of groups."""
 JobDeskOf = Annotated[JobDesk, Depends(_jobs)]
-"""Where long jobs are requested."""
+"""The desk at which long jobs are requested."""
 ReadingFleet = Annotated[Store, Depends(_summarised, scope="function")]
 """A store for reading the fleet; its summaries are made first where no background process makes them."""

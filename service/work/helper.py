@@ -28,7 +28,7 @@ from service.work.kinds import KINDS, Kind
 POLL_SECONDS = 0.25
 """Seconds between two checks whether the service is stopping during a diagnosis."""
 CONTEXT = multiprocessing.get_context("forkserver")
-"""How processes are started."""
+"""Start method of the processes."""
 NICENESS = 10
 """Priority, as `nice` counts: where all cores are busy a request gets nine tenths of one."""
 
@@ -104,7 +104,7 @@ class Helper:
 
 
 def work(pipe: Connection, settings: Settings, most: Limits) -> None:
-    """In the process: does requested work until the pipe is closed."""
+    """Does requested work in the process until the pipe is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # of a terminal; the service decides
     os.nice(NICENESS)  # a request that waits for what it holds leaves it the core
     limits.use(most)

@@ -1,4 +1,4 @@
-"""Where long jobs are requested: done in the background, or at once where no process works there."""
+"""The desk for long jobs: done in the background, or at once where no process works there."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -60,8 +60,9 @@ class JobDesk:
         work_piece(storage, job.id, now, self.coverage_factor)
 
     def _did_piece(self, storage: Storage, kind: Kind, job: Job, make: Callable[[datetime], None]) -> bool:
-        """Does a piece, unless another process has it or the job has ended; whether it was done here. A foreseen
-        failure is raised to the requester; any other costs this piece alone."""
+        """Does a piece, unless another process has it or the job has ended; returns whether it was done here. A
+        foreseen failure is raised to the requester; any other ends this piece alone.
+        """
         key, now, guard = str(job.id), self.clock(), Guard(self.metrics)
         with storage.database.writing() as store:
             if kind.queue(store).claim(key, now, now + LEASE) is None:

@@ -34,8 +34,9 @@ MOST_ATTEMPTS = 3
 """Attempts at which the program may fail, or its process die, before work is given up: two could be a machine in
 trouble."""
 MOST_ATTEMPTS_OF_FILE = 10
-"""The same for a file, which is read for minutes: it survives some restarts, and what was acknowledged is not lost by
-them."""
+"""Attempts at a file, which is read for minutes: it survives some restarts, and an acknowledged upload is not lost by
+them.
+"""
 PUT_OFF_FILE = timedelta(minutes=1)
 """Delay after an attempt that a passing cause prevented: somebody waits for the verdict."""
 LEASE = timedelta(seconds=30)
@@ -57,10 +58,10 @@ class Kind:
     most: int = MOST_ATTEMPTS
     put_off: timedelta = PUT_OFF
     is_awaited: bool = False
-    """Somebody may wait for one, which is then done first."""
+    """Whether somebody may wait for a piece, which is then done first."""
 
     def queue(self, store: Store) -> WorkQueue:
-        """Its queue."""
+        """The queue of this kind of work."""
         return WorkQueue(store, self.kind)
 
     def end(self, storage: Storage, key: str, now: datetime) -> None:

@@ -24,7 +24,7 @@ from service.work.helper import Helper, KeepGoing, StoppingError
 from service.work.kinds import AT_LAST, DIAGNOSES, IN_TURN, LEASE, UPLOADS, Kind
 
 LEASE_EXTENSION = timedelta(seconds=10)
-"""Between two extensions of a lease."""
+"""Time between two extensions of a lease."""
 POLL_SECONDS = 1.0
 """Seconds between two checks for work requested by other services; for work of this one the bell rings."""
 RETRY_SECONDS = 60.0
@@ -37,7 +37,7 @@ Make = Callable[[Kind, str, datetime, KeepGoing], Failure | None]
 
 @dataclass(frozen=True)
 class Worker:
-    """What background work needs."""
+    """Environment of background work."""
 
     settings: Settings
     storage: Storage

@@ -98,7 +98,7 @@ class JobView:
     """Seconds after which the page refreshes."""
     can_cancel: bool
     problems: tuple[Problem, ...]
-    """Of an upload that was refused."""
+    """Faults of a refused upload."""
 
 
 def jobs_page(
@@ -206,7 +206,7 @@ def ask_for_report(
 
 @router.get("/jobs/{id}")
 def show_job(request: Request, id: Number, store: Reading, desk: JobDeskOf, person: PersonOf, now: Now) -> HTMLResponse:
-    """How far one job has come."""
+    """Shows the progress of one job."""
     job = Jobs(store).get(id)
     problems = () if job.refusal is None else Arrivals(store).refusal(job.refusal).problems
     return render(request, "job.html", job_page(job, person, now, desk.workers, problems))
@@ -229,6 +229,6 @@ def _outcome(store: Store, job: Job) -> FileOutcome:
 
 @router.post("/jobs/{id}/cancel")
 def cancel(id: Number, by: By, storage: StorageOf, person: PersonOf, now: Now) -> RedirectResponse:
-    """Stops a job between two pieces, and shows what was done."""
+    """Stops a job between two pieces, and shows its state."""
     cancel_job(storage, id, person, by, now)
     return RedirectResponse(f"/jobs/{id}", SEE_OTHER)

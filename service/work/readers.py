@@ -1,5 +1,6 @@
-"""The diagnosis of a session, the outlook of a unit and what a group of sessions shows: awaited where they are made in
-the background, else made at once."""
+"""The diagnosis of a session, the outlook of a unit and the joint diagnosis of a group: awaited where they are made in
+the background, else made at once.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -160,7 +161,7 @@ class Reader:
 
 @dataclass(frozen=True)
 class GroupReader:
-    """Reads what groups show, of one service."""
+    """Reads joint diagnoses, for one service."""
 
     storage: Storage
     clock: Callable[[], datetime]

@@ -39,12 +39,13 @@ class Pace:
     """Intervals of the checks, s."""
 
     first: float = 20.0
-    """After the start, which has other work."""
+    """Delay after the start, which has other work, s."""
     every: float = 3600.0
-    """Between two checks: dates fall due by the day."""
+    """Time between two checks, s: dates fall due by the day."""
     retry: float = 60.0
-    """After a check in which something failed; doubled after each further one, up to `every`. A database that restarts
-    is back within a minute, and a permanent failure is not reported more often than a check."""
+    """Delay after a check in which something failed, s; doubled after each further one, up to `every`. A database that
+    restarts is back within a minute, and a permanent failure is not reported more often than a check.
+    """
 
     def after(self, failures: int) -> float:
         """The pause after a number of failed checks in a row."""
@@ -127,8 +128,9 @@ MISSING_AT_ONCE = 500
 
 
 def ask_for_missing(storage: Storage, clock: Callable[[], datetime], metrics: Metrics, bell: Bell, stop: Event) -> None:
-    """At the start: requests the diagnosis of every session that has none, or at which an older version failed; failed
-    work is retried."""
+    """Requests, at the start, the diagnosis of every session that has none, or at which an older version failed; failed
+    work is retried.
+    """
     last_session = ""
     with Guard(metrics).alone(DIAGNOSES.name, ""):
         with storage.database.writing() as store:

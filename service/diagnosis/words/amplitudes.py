@@ -1,4 +1,4 @@
-"""How large a cause is, and where it sits, in people's measures."""
+"""Sizes and places of causes, in practical measures."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -27,7 +27,7 @@ from service.kit.measures import (
 )
 
 PER_HOUR = 3600.0
-"""s."""
+"""Seconds in an hour."""
 MICRO_G = 1e6 / STANDARD_GRAVITY
 """Micro-g in one m/s²."""
 AMPLITUDE_MEASURES = {
@@ -53,14 +53,15 @@ AMPLITUDE_MEASURES = {
     "(rad/s)⁻²": Measure(say("ppm at Earth rate"), 1e6 * EARTH_RATE**2),
     "(rad/s)/(m/s²)": Measure("(°/h)/g", PER_HOUR / DEGREE * STANDARD_GRAVITY),
 }
-"""What the amplitude of a cause is read in, by its SI unit. A gyro on a stand feels the Earth's rate alone, so its
-nonlinearity is read as what it makes there."""
+"""Practical measure of a cause's amplitude, by its SI unit. A gyro on a stand feels the Earth's rate alone, so its
+nonlinearity is read as its effect there.
+"""
 COARSER = {
     "ppm": Measure("%", 1e2),
     "µg": Measure("mg", 1e3 / STANDARD_GRAVITY),
     "arcsec": Measure("°", 1 / DEGREE),
 }
-"""What amplitudes change to, by the label of the fine measure."""
+"""Coarser measures for large amplitudes, by the label of the fine measure."""
 
 
 def amplitude_measure(cause: str, si_unit: str, largest: float) -> Measure:
@@ -73,17 +74,17 @@ def amplitude_measure(cause: str, si_unit: str, largest: float) -> Measure:
 
 
 AT_ROWS = {"from": "from row {value}", "at": "at row {value}"}
-"""What is said of a cause that has its row."""
+"""Phrases for a cause that has its row."""
 NUMBERED = re.compile(r" \d+$")
-"""What tells two nonlinear parameters of one unit apart: ``row 1``, ``row 2``."""
+"""End of a name that tells two nonlinear parameters of one unit apart: ``row 1``, ``row 2``."""
 
 
 FINE = 0.01
-"""Of a measure: an uncertainty below it is read in a finer one, where there is one."""
+"""Share of a measure: an uncertainty below it is read in a finer one, where there is one."""
 
 
 class Sized(Protocol):
-    """What has amplitudes: a finding of a session or of a group."""
+    """A finding of a session or of a group, with amplitudes."""
 
     @property
     def cause(self) -> str: ...
@@ -123,8 +124,9 @@ def amplitudes_of(finding: Sized) -> Iterator[str]:
 
 
 def _size(cause: str, si_unit: str, value: float, expanded: float) -> str:
-    """``12.3 ± 1.4 µg``; what is known far better than its own measure shows has its ± in the finer one:
-    ``42.66433° ± 1.2 arcsec``."""
+    """The size with its uncertainty, ``12.3 ± 1.4 µg``; an uncertainty far below the measure of the size has its ± in
+    the finer one: ``42.66433° ± 1.2 arcsec``.
+    """
     largest = max(abs(x) if isfinite(x) else 0.0 for x in (value, expanded))
     measure, finer = amplitude_measure(cause, si_unit, largest), amplitude_measure(cause, si_unit, expanded)
     if measure == finer or not isfinite(expanded) or expanded * measure.factor >= FINE:
@@ -140,7 +142,7 @@ def _is_stated(value: float) -> bool:
 
 
 def part_of(cause: str, k: int) -> str:
-    """What one of several amplitudes is."""
+    """The name of one of several amplitudes."""
     known = find(cause)
     return known.amplitude_words[k] if known and known.amplitude_words else f"k{k + 1} ="
 
@@ -158,7 +160,7 @@ def shape_of(finding: Finding) -> str:
 
 
 def _alone(finding: Finding) -> str:
-    """What it is of each sensor."""
+    """The shape of the cause, for each sensor where they differ."""
     if finding.shared is not None:
         return _shared_shape(finding.cause, finding.shared)
     values = finding.nonlinear_each

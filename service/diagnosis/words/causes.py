@@ -1,4 +1,4 @@
-"""What causes are called: one alone, one on its sensors, and several that a session cannot distinguish."""
+"""Names of causes: one alone, one on its sensors, and several that a session cannot distinguish."""
 
 from collections.abc import Sequence
 
@@ -12,9 +12,9 @@ from service.kit.measures import HARD, number, spaced
 UNKNOWN_CAUSE = "unexplained"
 """Stands among the alternatives of a finding that a cause which is not in the catalogue explains as well."""
 EVERY_SENSOR = "every sensor of its kind"
-"""Where what a group shows acts on all of them."""
+"""Name for all sensors where a group's finding acts on all of them."""
 LEARNED = "empirical term"
-"""What a term is called that was learned, in place of a cause."""
+"""Name of a learned term, in place of a cause."""
 ONE_NOT_KNOWN = "a cause outside the catalogue"
 COMPARABLE = 3.0
 """Times that one share of probability may be another's and both still pass for equally likely: evidence below that is
@@ -41,7 +41,9 @@ def cause_on(identifier: str, sensors: Sequence[str]) -> str:
 
 
 def weighty_first(findings: Sequence[Finding]) -> tuple[Finding, ...]:
-    """In the order of reading; how the block sits since earlier sessions, without which it is judged, comes last."""
+    """The findings in the order of reading; the seating of the block since earlier sessions, which is no ground for the
+    verdict, comes last.
+    """
     return tuple(sorted(findings, key=_is_seating))
 
 
@@ -56,7 +58,7 @@ def is_lone(finding: Finding) -> bool:
 
 
 def what_is_wrong(finding: Finding, findings: Sequence[Finding] = ()) -> str:
-    """What is wrong in a sentence; of several causes their names: ``Cannot tell which: ramp or warm up (A3).``
+    """The fault in a sentence; the names of several causes: ``Cannot tell which: ramp or warm up (A3).``
 
     ``findings``: all of the diagnosis. A sensor with two names has two causes at once, or one that nobody knows.
     """

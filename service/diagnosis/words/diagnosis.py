@@ -1,4 +1,4 @@
-"""A diagnosis in words: what it came to in one line, at the head of a page, and what to do about it."""
+"""A diagnosis in words: its result in one line, at the head of a page, and the action to take."""
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
@@ -44,7 +44,7 @@ HEADLINES = {
     DiagnosisState.FAILED: "This session could not be diagnosed",
     DiagnosisState.NOT_APPLICABLE: "Not applicable to this programme",
 }
-"""Where the answer itself is not at hand."""
+"""Headlines where the answer itself is not at hand."""
 STILL_MADE = "The diagnosis needed for this is still running: ask again in a few seconds."
 AGREE = "Measurement and simulation agree within the noise: no known cause and no other structure was found."
 RESTATE = (
@@ -66,7 +66,7 @@ REPEAT_BOTH = say(
 
 
 class DiagnosisAnswer(Protocol):
-    """What a diagnosis came to, as it was made or as it is stored."""
+    """Result of a diagnosis, as it was made or as it is stored."""
 
     @property
     def findings(self) -> tuple[Finding, ...]: ...
@@ -89,7 +89,9 @@ def summary_of(answer: DiagnosisAnswer) -> str:
 
 
 def nothing_of(answer: DiagnosisAnswer) -> str:
-    """That nothing is wrong, unless it is what the file says of the noise, or nothing is left to judge by."""
+    """The sentence that nothing is wrong, with a reservation where the stated noise is, or where no reading is left to
+    judge by.
+    """
     if answer.calibration.fit.is_exact:
         return say("{summary}. {fits}", summary=NOTHING_LEFT, fits=TAKEN_UP)
     if answer.noise:
@@ -102,7 +104,7 @@ def nothing_of(answer: DiagnosisAnswer) -> str:
 
 
 def errors_of(answer: DiagnosisAnswer) -> tuple[str, ...]:
-    """Which stated standard errors are wrong, a sentence each."""
+    """The stated standard errors that are wrong, a sentence each."""
     return wrong_errors(answer.noise, _kinds(answer))
 
 
@@ -111,7 +113,7 @@ def _kinds(answer: DiagnosisAnswer) -> set[str]:
 
 
 def _named(findings: Sequence[Finding]) -> str:
-    """The first findings; two that are one choice are named once."""
+    """The first findings in words; two that are one choice are named once."""
     said = tuple(dict.fromkeys(what_is_wrong(finding, findings) for finding in findings))
     more = len(said) - MOST_FINDINGS
     return joined(" ", said[:MOST_FINDINGS]) + (say(" And {number} more.", number=more) if more > 0 else "")
@@ -121,12 +123,12 @@ CANNOT = "The session cannot be diagnosed: {fault}"
 
 
 def cannot_be_diagnosed(fault: SessionError) -> str:
-    """What the session lacks."""
+    """The reason in the session why it cannot be diagnosed."""
     return say(CANNOT, fault=fault)
 
 
 def fault_of_the_program(session: str) -> str:
-    """That the program failed, and what holds all the same."""
+    """The sentence that the program failed, and that session, calibration and verdict hold all the same."""
     return say(
         "The program failed at this diagnosis or needed too much time or memory: that is a fault of the program, not "
         "of the session. Session, calibration and verdict are stored and valid, and the next version of the program "
@@ -136,7 +138,7 @@ def fault_of_the_program(session: str) -> str:
 
 
 def headline(answer: DiagnosisAnswer) -> str:
-    """The first cause or the choice that cannot be made; without one what the diagnosis came to."""
+    """The first cause or the choice that cannot be made; without one the result of the diagnosis."""
     if answer.findings:
         return what_is_wrong(weighty_first(answer.findings)[0], answer.findings)
     if answer.structures:
@@ -152,7 +154,7 @@ def _nothing(answer: DiagnosisAnswer) -> str:
 
 
 def what_to_do(answer: DiagnosisAnswer) -> str:
-    """What a technician does next."""
+    """The next action of the technician."""
     if answer.findings:
         return _about(weighty_first(answer.findings)[0], answer.findings)
     if answer.structures:

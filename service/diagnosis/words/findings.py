@@ -1,4 +1,4 @@
-"""What else a finding could be: its alternatives, how to distinguish them, and the ranking of all causes."""
+"""Alternatives to a finding, measurements that distinguish them, and the ranking of all causes."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -40,13 +40,13 @@ class CauseChoice:
     cause: str
     name: str
     share: str
-    """Among all known causes."""
+    """Probability among all known causes."""
     now: str
-    """How far it is from the first one in this session."""
+    """Separation from the first one in this session."""
     measurement: str
-    """What would distinguish it from the first one."""
+    """Measurement that would distinguish it from the first one."""
     meaning: str = ""
-    """What is wrong if it is this one, in a sentence; empty of one that is not in the catalogue."""
+    """The fault if it is this cause, in a sentence; empty for one that is not in the catalogue."""
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ def _meaning(name: str, finding: Finding) -> str:
 
 
 def _apart(separation: Separation | None) -> tuple[str, str]:
-    """How far a rival is now, and the measurement that would distinguish it with what to expect of it."""
+    """Separation of a rival now, and the measurement that would distinguish it, with the expected separation."""
     if separation is None:
         return "", ""
     expected = separation.then or 0.0
@@ -105,7 +105,7 @@ def ranking_of(finding: Finding) -> Iterator[Bar]:
 SURE = 1e-12
 """Probability by chance below which the exponent says no more."""
 SUPERSCRIPT = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
-"""Of a power of ten."""
+"""Superscript digits of a power of ten."""
 
 
 @dataclass(frozen=True)
@@ -114,11 +114,11 @@ class FindingView:
 
     cause: str
     name: str
-    """What the cause is called."""
+    """Name of the cause."""
     statement: str
-    """What is wrong, or the choice that cannot be made."""
+    """The fault, or the choice that cannot be made."""
     sentence: str
-    """What is wrong if it is the first of several causes."""
+    """The fault if it is the first of several causes."""
     doubtful: bool
     level: bool
     """Whether its several causes are about equally likely."""
@@ -152,7 +152,7 @@ def finding_view(
     *,
     by_stated_noise: bool = False,
 ) -> FindingView:
-    """What a technician and an engineer read of a finding; ``findings``: all of its diagnosis."""
+    """A finding for people; ``findings``: all of its diagnosis."""
     names = (finding.cause, *finding.alternatives)
     first = find(finding.cause)
     of_noise, held = isinstance(first, ExcessNoise), first is not None and first.always_modelled
@@ -186,9 +186,9 @@ def finding_view(
 
 
 def evidence(strength: float, p_value: float, *, by_stated_noise: bool = False) -> str:
-    """How strong an effect is, and how often a session with nothing wrong would show as much.
+    """The strength of an effect, and how often a session with nothing wrong would show as much.
 
-    ``by_stated_noise``: the file says what noise is, and nothing has put that to the test.
+    ``by_stated_noise``: the noise is as stated in the file, untested.
     """
     condition = ", if the noise is as stated" if by_stated_noise and isfinite(p_value) else ""
     parts = {"strength": standard_errors(strength), "p_value": _chance(p_value), "condition": condition}
@@ -196,7 +196,7 @@ def evidence(strength: float, p_value: float, *, by_stated_noise: bool = False) 
 
 
 def evidence_together(strength: float, over: OverSessions) -> str:
-    """How strong an effect is that no session shows alone, and how likely this one has it."""
+    """The strength of an effect that no session shows alone, and the probability that this one has it."""
     parts = {"strength": standard_errors(strength), "sessions": over.sessions, "probability": percent(over.here)}
     return say(
         "{strength} over {sessions} sessions of the unit; probability that this one has it too: {probability}", **parts
@@ -264,9 +264,9 @@ COMPONENTS = {
     "β of the gyros": "the angle β were wrong, for the gyros only",
     "α of the gyros": "the angle α were wrong, for the gyros only",
 }
-"""What each component of a course looks like."""
+"""Pattern of each component of a course, as the change of the applied vector that would cause it."""
 IN_COMMON = "the applied vector, common to all sensors: "
-"""How the place of a pattern begins that all sensors share: what is said of it says that already."""
+"""Beginning of the place of a pattern common to all sensors; removed in a sentence that says so already."""
 LOOK_AT_SENSOR = "Look at where it occurs, repeat the session, and compare with another unit or stand."
 LOOK_AT_STAND = (
     "All sensors show it, so no sensor causes it. Check the stand, the fixture and the reference: play, levelling, "
@@ -276,24 +276,24 @@ LOOK_AT_RECORD = "Check columns, runs, angles and signs in the file. Correct it 
 
 
 def headline_of(structures: Sequence[Structure]) -> str:
-    """What is there, in a few words: of the record first, because nothing else holds where that is wrong."""
+    """The headline of patterns, in a few words: of the record first, because nothing else holds where that is wrong."""
     first = leading(structures)
     return MIXED_UP if first.of_record else UNEXPLAINED if first.sensors else COMMON
 
 
 def what_to_do_about(structures: Sequence[Structure]) -> str:
-    """What a technician does next."""
+    """The next action of the technician."""
     first = leading(structures)
     return LOOK_AT_RECORD if first.of_record else LOOK_AT_SENSOR if first.sensors else LOOK_AT_STAND
 
 
 def leading(structures: Sequence[Structure]) -> Structure:
-    """The one that is named first."""
+    """The pattern that is named first."""
     return next((s for s in structures if s.of_record), structures[0])
 
 
 def in_words(structures: Sequence[Structure]) -> str:
-    """What is there, in whom and where, in one line."""
+    """The kind of pattern, its sensors and its place, in one line."""
     first = leading(structures)
     named = first.sensors and not first.of_record
     headline = unexplained_in(first.sensors) if named else headline_of(structures)
@@ -306,7 +306,7 @@ def unexplained_in(sensors: Sequence[str]) -> str:
 
 
 def summed_up(structures: Sequence[Structure]) -> str:
-    """That something is there, and in which sensors."""
+    """The kind of pattern and its sensors, in one line."""
     if leading(structures).of_record:
         return in_words(structures)
     sensors = sorted({sensor for structure in structures for sensor in structure.sensors})
@@ -323,7 +323,7 @@ def who_of(structure: Structure) -> str:
 
 
 def where_of(structure: Structure) -> str:
-    """Where it lives; of a course what it does to the applied vector."""
+    """The place of a pattern; for a course, its effect on the applied vector."""
     if structure.course is not None:
         return say("the applied vector {course}", course=course_in_words(structure.course))
     return changed(structure.where, lambda text: text.removeprefix(IN_COMMON))

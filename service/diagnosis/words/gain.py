@@ -1,4 +1,4 @@
-"""What naming causes gains: one sentence with one number for every sensor."""
+"""Gain from naming causes: one sentence with one number for every sensor."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from estimator.message import joined, say
 from service.kit.measures import THIN, decimals, deviation_measure, number
 
 NAMED = 3
-"""Sensors that are named; of the others it is said how many they are."""
+"""Most sensors that are named; of the others only the number is given."""
 SHARES = (
     (0.22, 0.28, "of {sensor} falls to a quarter: {before} → {after}"),
     (0.30, 0.37, "of {sensor} falls to a third: {before} → {after}"),
@@ -20,7 +20,7 @@ SHARES = (
     (0.72, 0.78, "of {sensor} falls by a quarter: {before} → {after}"),
     (0.98, 1.02, "of {sensor} does not fall: {before} → {after}"),
 )
-"""From which share of the error before to which, and what is said of it."""
+"""Least and largest remaining share of the error, and the sentence for it."""
 FALLS = "of {sensor} falls from {before} to {after}"
 RISES = "of {sensor} rises from {before} to {after}"
 
@@ -34,7 +34,7 @@ class HeldOut:
     before: float
     after: float
     typical: float
-    """Of its kind, before."""
+    """Median error of the sensor's kind, before."""
 
 
 Errors = Mapping[str, Mapping[str, float]]
@@ -42,10 +42,11 @@ Errors = Mapping[str, Mapping[str, float]]
 
 
 def gain_in_words(gain: Gain, sensors: Sequence[str] = ()) -> str:
-    """``Held-out error of A2 halves: 14 → 7 µg (readings that took no part).``
+    """The gain of sensors, or of all where none is named: ``Held-out error of A2 halves: 14 → 7 µg (readings that took
+    no part).``
 
-    Of some sensors, or of all where none is named; empty where a version that stated none made it, and where what was
-    found leaves every reading's prediction as it was: a change since earlier sessions is none within the session.
+    Empty where a version that stated none made it, and where the findings leave every reading's prediction as it was: a
+    change since earlier sessions is none within the session.
     """
     parts = errors_in_words(gain.before.rms_by_sensor or {}, gain.after.rms_by_sensor or {}, sensors)
     return say("Held-out error {parts} (readings that took no part).", parts=parts) if parts else ""
@@ -68,7 +69,7 @@ def concerned(findings: Iterable[Finding]) -> tuple[str, ...]:
 
 
 def _errors(before: Errors, after: Errors) -> Iterator[HeldOut]:
-    """Of every sensor of which both errors are known, and that the extended model predicts otherwise."""
+    """The errors of every sensor of which both are known, and that the extended model predicts otherwise."""
     for kind, by_sensor in before.items():
         typical = median(by_sensor.values())
         for sensor, error in by_sensor.items():

@@ -25,7 +25,7 @@ NAME_AT = 30
 ENDINGS = (
     (XLSX, "xlsx"), (PARQUET, "parquet"), (HDF5, "h5"), (MAT, "mat"), (ULOG, "ulg"), (MCAP, "mcap"), (SQLITE, "db3"),
 )  # fmt: skip
-"""Of the second part, by its first bytes; anything else is text."""
+"""Extension of the second part's name, by its first bytes; anything else is text."""
 LONGEST_MAPPING = 1024 * 1024
 """Bytes; ten thousand columns take less."""
 PARTS = 2

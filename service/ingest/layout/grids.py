@@ -26,7 +26,7 @@ from service.kit.limits import check_table, refusal
 
 Cell = str | float | None
 SEPARATORS = (";", "\t", "|", ",")
-"""Of columns, the unlikeliest within a cell first: a comma may be a decimal comma."""
+"""Separators of columns, the unlikeliest within a cell first: a comma may be a decimal comma."""
 SCANNED_ROWS = 60
 """Rows among which the headings are searched."""
 EQUAL_SHARE = 0.8
@@ -53,24 +53,24 @@ class Grid:
     """text, xlsx, parquet, hdf5, mat or log."""
     headings: tuple[str, ...]
     columns: tuple[Sequence[Cell], ...]
-    """As written: numbers where the file has numbers, else texts, None where empty."""
+    """Cells as written: numbers where the file has numbers, else texts, None where empty."""
     taken: Mapping[str, Any]
     """Settings of the parser: encoding, separator, decimal, sheet, header_row, first_row."""
     sheets: tuple[str, ...] = ()
     meanings: Mapping[str, str] = field(default_factory=dict)
-    """What the file states of its columns, by heading."""
+    """Meanings of its columns stated in the file, by heading."""
     facts: Mapping[str, Any] = field(default_factory=dict)
-    """What a log states of the session."""
+    """Facts of the session stated in a log."""
     titles: Mapping[str, Any] = field(default_factory=dict)
-    """What the rows above a table state of it."""
+    """Facts of the session stated in the rows above a table."""
     screening: Screening = ()
-    """What was found in the samples of a log before they were put into rows."""
+    """Findings in the samples of a log before they were put into rows."""
     skipped: frozenset[int] = frozenset()
     """Rows, from 0, that repeat the headings or are a title among the readings."""
 
     @property
     def rows(self) -> int:
-        """How many rows of readings."""
+        """Number of rows of readings."""
         return max(map(len, self.columns), default=0)
 
     def place(self, column: int, row: int) -> str:
@@ -115,7 +115,7 @@ def number_of(cell: Cell, decimal: str) -> float | None:
 
 
 def is_nothing(cell: Cell) -> bool:
-    """Whether a cell is empty or says so."""
+    """Whether a cell is empty or holds a word for nothing."""
     return cell is None or (isinstance(cell, str) and cell.strip().casefold() in NOTHING)
 
 

@@ -1,4 +1,4 @@
-"""What a preview shows of a file before anything is decided: headings, first cells, the words of its columns."""
+"""Preview of a file before anything is decided: headings, first cells, the words of its columns."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""`imu-mapping/1`: how a table of custom layout is read. Checked here, once; every fault is named with its place."""
+"""`imu-mapping/1`: the mapping of a table of custom layout. Checked here, once; every fault is named with its place."""
 
 import hashlib
 from collections.abc import Mapping
@@ -35,7 +35,7 @@ def fingerprint(preview: Mapping[str, Any]) -> str:
 
 @dataclass(frozen=True)
 class ColumnMapping:
-    """How one column is read."""
+    """Mapping of one column."""
 
     heading: str
     meaning: str | None

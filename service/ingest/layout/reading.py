@@ -20,7 +20,7 @@ WORDS = ("run", "position")
 CLOCK = re.compile(r"^(?:(?P<h>\d{1,2}):)?(?P<m>\d{1,2}):(?P<s>\d{1,2}(?:[.,]\d+)?)$")
 """A time of day, or minutes and seconds."""
 DAY = 86_400.0
-"""s."""
+"""Seconds in a day."""
 
 
 def document_of(content: bytes, filename: str, layout: Layout) -> tuple[dict[str, object], Where, Screening]:

@@ -1,4 +1,4 @@
-"""Title rows above a table → what they state of the session: serial number, date and time, stand, operator."""
+"""Title rows above a table → the facts of the session stated there: serial number, date and time, stand, operator."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -14,14 +14,14 @@ KEYS = {
     "stand": r"stand|test stand|prüfstand|messplatz|стенд|установка",
     "operator": r"operator|measured by|bearbeiter|prüfer|оператор|исполнитель|измерил",
 }
-"""What begins a title, in English, German and Russian."""
+"""Beginnings of titles, in English, German and Russian."""
 TITLE = {
     key: re.compile(rf"(?:{words})(?:(?<=№)|(?!\w))\.?(?: ?(?:№|#|no\.|nr\.))?(?P<mark> ?[:=])?(?P<rest>.*)", re.I)
     for key, words in KEYS.items()
 }
 NAME, NUMBER, PERSON = re.compile(r"[^\s:=]*\d[^\s:=]*$"), re.compile(r"\d"), re.compile(r"[^\W\d_][^:=]*$")
 VALUE = {"unit": NAME, "day": NUMBER, "clock": NUMBER, "stand": NAME, "operator": PERSON}
-"""What needs no colon before it: ``Stand ODG-1``."""
+"""Values that need no colon before them: ``Stand ODG-1``."""
 DAY = re.compile(r"(?P<y>\d{4})-(?P<m>\d\d)-(?P<d>\d\d)|(?P<d2>\d\d?)\.(?P<m2>\d\d?)\.(?P<y2>\d{4})")
 CLOCK = re.compile(
     r"(?P<h>\d\d?):(?P<m>\d\d)(?::\d\d(?:[.,]\d+)?)?(?: ?(?:UTC|GMT)? ?(?P<z>[+−-]\d\d?(?::?[0-5]\d)?))?"
@@ -79,7 +79,9 @@ def _start(day_text: str, clock_text: str) -> str:
 
 
 def _offset(zone: str, text: str) -> str:
-    """``+05:30``; what follows a minus sign may be when it ended, unless it is said to be a zone."""
+    """The offset of a zone: ``+05:30``. A part after a minus sign may be the end of the session, unless it is named as
+    a zone.
+    """
     if not zone or (zone[0] != "+" and not ZONED.search(text)):
         return "Z"
     digits = re.sub(r"\D", "", zone)

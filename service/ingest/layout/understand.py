@@ -28,11 +28,11 @@ NUMBERED = re.compile(r"^(?P<word>\D*?)[ _.\-№#]*(?P<place>\d{1,3}|[xyzXYZ])$"
 
 @dataclass(frozen=True)
 class SeenColumn:
-    """One column as it stands in the file."""
+    """One column as in the file."""
 
     heading: str
     cells: Sequence[str]
-    """The first cells, as text."""
+    """First cells, as text."""
     numeric: bool
     """Whether most of its cells are numbers."""
     empty: bool
@@ -120,7 +120,7 @@ def _by_its_end(name: str, names: Mapping[str, str]) -> str | None:
 
 
 def _by_a_word(name: str) -> str | None:
-    """From any word of a longer heading: *Angle of the head*."""
+    """The meaning by any word of a longer heading: *Angle of the head*."""
     return next((BY_WORD[word] for word in map(_plain, re.split(r"[\s,_]+", name)) if word in BY_WORD), None)
 
 
@@ -154,7 +154,9 @@ def _run_word(word: str) -> str:
 
 
 def _plain(text: str) -> str:
-    """In lower case, without spaces and punctuation; Cyrillic letters of a sensor's name as their Latin twins."""
+    """The text in lower case, without spaces and punctuation; Cyrillic letters of a sensor's name as their Latin
+    twins.
+    """
     compact = re.sub(r"[\s_.\-:]+", "", text.strip())
     if re.fullmatch(r"[АВСЕНКМОРТХавсеорху]\d{1,3}", compact):
         compact = compact.upper().translate(LOOK_ALIKE)

@@ -56,7 +56,7 @@ SHOWN = {
     "v": "V", "mv": "mV", "µv": "µV", "amp": "A", "ma": "mA", "µa": "µA", "°c": "°C", "k": "K", "°f": "°F",
     "gal": "Gal",
 }  # fmt: skip
-"""As they are written, where that is not in lower case."""
+"""Spelling of units that are not written in lower case."""
 TARGETS = {
     "beta_deg": "deg", "turn_angle_deg": "deg", "tilt_se_deg": "deg", "time_s": "s", "temperature_c": "°c",
     "vibration_m_s2": "m/s²",

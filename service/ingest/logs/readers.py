@@ -1,4 +1,4 @@
-"""The reader of a log by its first bytes, and what to do where its library is missing."""
+"""The reader of a log by its first bytes, and advice where its library is missing."""
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
@@ -16,11 +16,11 @@ MODULES = {ULOG: "ulog", MCAP: "mcap_file", SQLITE: "sqlite_bag"}
 
 @dataclass(frozen=True)
 class Contents:
-    """What a log holds of its IMUs."""
+    """IMU data in a log."""
 
     streams: Sequence[Stream]
     facts: dict[str, object]
-    """What it states of the session."""
+    """Facts of the session stated in the log."""
 
 
 def log_of(content: bytes, filename: str, declined: Collection[str] = ()) -> LogTable | None:

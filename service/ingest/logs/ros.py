@@ -22,12 +22,12 @@ from service.kit.limits import refusal
 
 IMU = "sensor_msgs/msg/Imu"
 CDR = "cdr"
-"""How ROS 2 writes messages, as bags name it."""
+"""ROS 2's encoding of messages, as bags name it."""
 NANOSECOND = 1e-9
 EARLIEST, LATEST = 946_684_800.0, 4_102_444_800.0
 """2000 and 2100, s since 1970: a clock outside counts from something else."""
 COLUMNS = 9
-"""Of an instance: two times, three rates, three accelerations, and which of the two are present."""
+"""Columns of an instance: two times, three rates, three accelerations, and which of the two are present."""
 Message = tuple[str, int, bytes]
 """Topic, time of the log in ns, content."""
 DAMAGED = (SerdeError, ValueError, IndexError, TypeError, OverflowError)
@@ -75,6 +75,6 @@ def _streams(topic: str, table: Array) -> Iterator[Stream]:
 
 
 def _facts(streams: Iterable[Stream]) -> dict[str, object]:
-    """When it was measured, where the clock is plausible."""
+    """The start of the measurement, where the clock is plausible."""
     first = max((float(stream.time[0]) for stream in streams if len(stream.time)), default=0.0)
     return {"started_at": datetime.fromtimestamp(first, UTC).isoformat()} if EARLIEST < first < LATEST else {}

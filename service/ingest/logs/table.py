@@ -47,7 +47,7 @@ class Stream:
 
 
 def in_order(stream: Stream, declined: Collection[str] = ()) -> tuple[Stream, Screening]:
-    """Its own readings, screened, by time: of two clocks in one log one may lag behind."""
+    """The stream's own readings, screened, by time: of two clocks in one log one may lag behind."""
     named = [replace(AXIS, name=f"{stream.label} {axis}", kind=stream.kind) for axis in AXES]
     screen = Screen(tuple(named), frozenset(declined), None)
     values = screen.readings(stream.values)
@@ -61,7 +61,7 @@ RATE = 50.0
 """Rows a second at most: a rest of two seconds has a hundred, and a log of three IMUs lasts half an hour within the
 usual limits."""
 SAMPLES = 2.0
-"""Of the slowest stream in a row, so that its jitter leaves no row empty."""
+"""Samples of the slowest stream in a row, so that its jitter leaves no row empty."""
 SLOWEST = 4.0
 """Samples a second of any stream at least: with fewer a rest cannot be recognised."""
 FEWEST = 100
@@ -73,13 +73,13 @@ class LogTable:
     """A log as a table with the meaning of its columns."""
 
     columns: dict[str, Array]
-    """By heading."""
+    """Columns by heading."""
     meanings: tuple[str, ...]
     """Meaning of each column."""
     facts: dict[str, object]
-    """What it states of the session: imu-session/1 without its table."""
+    """Facts of the session stated in the log: imu-session/1 without its table."""
     screening: Screening = ()
-    """What was found in its samples."""
+    """Findings in the log's samples."""
 
 
 def log_table(
@@ -197,7 +197,7 @@ def _is_warm(stream: Stream) -> bool:
 
 
 def _sensor(name: str, stream: Stream, axis: int) -> dict[str, object]:
-    """In SI and along the axes of the log: its calibration is what the session determines."""
+    """The entry of a sensor in SI and along the axes of the log: the session determines its calibration."""
     entry: dict[str, object] = {
         "name": name,
         "nominal_axis": [float(k == axis) for k in range(len(AXES))],

@@ -1,1 +1,1 @@
-"""How histories become forecasts, and units stand out of their type."""
+"""Rules for forecasts from histories, and for units that stand out of their type."""

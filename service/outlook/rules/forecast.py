@@ -1,4 +1,4 @@
-"""Step: histories and what their type lets expect → trends, what the unit needs next and why."""
+"""Step: histories and the priors of their type → trends, the next action for the unit, and its reason."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -40,7 +40,7 @@ ACTIONS = {
     DueRule.UNDECIDED: Action.REPEAT,
     DueRule.MAY_BE_OUT: Action.REPEAT,
 }
-"""What a unit needs next that waits for no date."""
+"""Next action for a unit without a date to wait for."""
 CALLED: dict[Kind, ChangeKind] = {
     Kind.JUMP: "jump", Kind.LATE: "drift", Kind.START: "drift", Kind.AGING: "aging", Kind.WALK: "walk"
 }  # fmt: skip
@@ -49,17 +49,17 @@ CALLED: dict[Kind, ChangeKind] = {
 
 @dataclass(frozen=True)
 class Past:
-    """What is stored of a unit that its outlook rests on, its histories apart."""
+    """Stored facts behind a unit's outlook, besides its histories."""
 
     serial: str
     since: datetime | None
-    """Its last break; None where there was none."""
+    """Date of the unit's last break; None where there was none."""
     latest: StoredSession | None
-    """Its latest calibration; None before the first."""
+    """The unit's latest calibration; None before the first."""
     longest_days: float
-    """From one calibration to the next, as the type allows."""
+    """Longest time from one calibration to the next by the unit's type, days."""
     shown: StoredSession | None = None
-    """Its latest session of any programme: a recording in service sets no date, but may find it unfit."""
+    """The unit's latest session of any programme: a recording in service sets no date, but may find it unfit."""
 
 
 def forecast(past: Past, known: Histories, priors: Mapping[tuple[str, str], Prior]) -> UnitOutlook:
@@ -112,13 +112,13 @@ def _trend(known: Histories, i: int, found: Outlook) -> ParameterTrend:
 
 
 def _since(found: Outlook, dates: tuple[datetime, ...]) -> datetime:
-    """The first session that the rate in force goes through."""
+    """The date of the first session under the rate in force."""
     drift = found.drift
     return dates[max([*found.steps, 0 if drift is None else max(drift.gap - 1, 0)])]
 
 
 def _change(change: Change, tolerance: float, dates: tuple[datetime, ...]) -> FoundChange:
-    """Of an axis its length."""
+    """A found change in SI or relative; for an axis its length."""
     size, sigma = change.size, change.sigma
     length = float(size[0]) if len(size) == 1 else float(np.hypot(*size))
     spread = float(sigma[0]) if len(size) == 1 else float(np.hypot(*(sigma * size)) / max(length, 1e-300))
@@ -143,7 +143,7 @@ def _risk(known: Histories, found: Prognosis) -> tuple[RiskPoint, ...]:
 
 @dataclass(frozen=True, eq=False)
 class _Foreseen:
-    """What the histories let expect; empty where there are none."""
+    """Forecast from the histories; empty where there are none."""
 
     trends: tuple[ParameterTrend, ...]
     risk: tuple[RiskPoint, ...]

@@ -1,4 +1,4 @@
-"""Step: judged changes since the last break → a history of each parameter, and what it adds to the unit's type."""
+"""Step: judged changes since the last break → a history of each parameter, and its contribution to the unit's type."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -69,7 +69,7 @@ class MeasuredChange:
 
     @property
     def largest(self) -> float:
-        """What a chart of this point must have room for."""
+        """Largest size for which a chart of this point needs room."""
         return max(abs(self.value or 0.0), self.tolerance or 0.0)
 
     @property
@@ -93,7 +93,7 @@ def changes_of(points: Sequence[HistoryPoint], services: Sequence[Service]) -> t
 
 @dataclass(frozen=True)
 class TrackKey:
-    """Which parameter of which sensor."""
+    """A parameter of a sensor."""
 
     sensor: str
     kind: str
@@ -106,19 +106,19 @@ Place = tuple[str, str, str]
 
 @dataclass(frozen=True, eq=False)
 class Left:
-    """What is left of a change without what a diagnosis explains of it."""
+    """Rest of a change without the part that a diagnosis explains."""
 
     change: list[float]
     sigma: list[float]
-    """Its standard uncertainty that the session brings."""
+    """Standard uncertainty of the rest from the session itself."""
     dof: float | None
     part: list[float]
-    """That was taken off; all SI or relative."""
+    """Part that was taken off; all SI or relative."""
 
 
 NOTHING_EXPLAINED: dict[Place, Left] = {}
 WORTH_TELLING = 0.1
-"""Part of the tolerance from which on it is said that a diagnosis explains it."""
+"""Least share of the tolerance at which the part that a diagnosis explains is mentioned."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,12 +128,12 @@ class Histories:
     keys: tuple[TrackKey, ...]
     tracks: tuple[Track, ...]
     dates: tuple[tuple[datetime, ...], ...]
-    """Of every track's sessions, the reference included."""
+    """Dates of every track's sessions, the reference included."""
     left: Mapping[Place, Left] = field(default_factory=dict)
-    """Of changes that a diagnosis explains in part."""
+    """Rests of changes that a diagnosis explains in part."""
 
     def explained_in(self, session: str) -> tuple[tuple[TrackKey, float], ...]:
-        """What a diagnosis explains of a session's changes, the lengths SI or relative, where it is worth telling."""
+        """The changes of a session that a diagnosis explains, the lengths SI or relative, where worth telling."""
         found = ((key, track, self.left.get((session, key.sensor, key.parameter))) for key, track in self._tracks())
         sizes = ((key, track, hypot(*left.part)) for key, track, left in found if left is not None)
         return tuple((key, size) for key, track, size in sizes if size >= WORTH_TELLING * track.tolerance)
@@ -145,8 +145,9 @@ class Histories:
 def histories(
     changes: Sequence[ChangeRow], references: Sequence[ReferenceRow], left: Mapping[Place, Left] = NOTHING_EXPLAINED
 ) -> Histories:
-    """In the order in which sensors and parameters were first judged; of changes that a diagnosis explains in part,
-    what is left."""
+    """The histories in the order in which sensors and parameters were first judged; of changes that a diagnosis
+    explains in part, only the rest.
+    """
     groups = _groups(changes, references)
     dated = [_track(key, rows, reference, left) for key, (rows, reference) in groups.items()]
     return Histories(tuple(groups), tuple(track for track, _ in dated), tuple(at for _, at in dated), left)
@@ -160,7 +161,7 @@ Point = tuple[datetime, list[float], list[float], float | None, float | None]
 
 
 def type_evidence(found: Histories) -> dict[tuple[str, str], list[Evidence]]:
-    """What each history contributes, by kind of sensor and parameter."""
+    """The evidence of each history, by kind of sensor and parameter."""
     by_place: dict[tuple[str, str], list[Evidence]] = {}
     for key, track in zip(found.keys, found.tracks, strict=True):
         by_place.setdefault((key.kind, key.parameter), []).append(evidence(track))
@@ -212,7 +213,7 @@ def _track(
 
 
 def _point(row: ChangeRow | ReferenceRow, measured: Measured, dof: float | None, left: Left | None) -> Point:
-    """One session's change, without what a diagnosis explains of it."""
+    """One session's change, without the part that a diagnosis explains."""
     change, sigma = measured
     if left is None:
         return row.at, change, sigma, dof, row.temperature
@@ -220,11 +221,11 @@ def _point(row: ChangeRow | ReferenceRow, measured: Measured, dof: float | None,
 
 
 def _as_measured(rows: Sequence[ChangeRow], reference: ReferenceRow) -> tuple[Measured, ...] | None:
-    """The reference's change and those of the rows, nothing taken off, where the sessions span temperature; None of a
-    parameter that does not follow it.
+    """The reference's change and those of the rows, without corrections, where the sessions span temperature; None for
+    a parameter that does not follow it.
 
-    What all sensors have in common is what a majority agrees on: of sensors that each follow the temperature by a law
-    of their own it is another one at each temperature, and what is left of them follows none.
+    The common part of all sensors is the one on which a majority agrees: where each sensor follows the temperature by a
+    law of its own it differs at each temperature, and the rest follows none.
     """
     warm = np.array([reference.temperature, *(row.temperature for row in rows)], dtype=float)
     first = reference.u.get((rows[-1].sensor, rows[-1].parameter))

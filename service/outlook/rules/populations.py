@@ -1,6 +1,6 @@
-"""How the units of a type drift, parameter by parameter: the centre and the spread of their rates, and who is far out.
+"""Drift of the units of a type, parameter by parameter: centre and spread of their rates, and the units far out.
 
-A type of thousands of units is looked at once for many pages: what they read is a few numbers and the furthest few.
+A type of thousands of units is evaluated once for many pages, which read a few numbers and the furthest few.
 """
 
 from collections.abc import Iterator, Sequence
@@ -27,7 +27,7 @@ Group = list[Rate]
 
 
 def populations(rates: Sequence[Rate]) -> tuple[Population, ...]:
-    """Of the rates of one type."""
+    """The populations of the rates of one type."""
     groups: dict[tuple[str, str], Group] = {}
     for rate in rates:
         groups.setdefault((rate.kind, rate.parameter), []).append(rate)
@@ -57,7 +57,7 @@ def _population(kind: str, parameter: str, group: Group) -> Population:
 
 
 def _placed(rate: Rate, z: float) -> tuple[Placed, float]:
-    """With the chance of such a rate without a drift."""
+    """The rate at its distance, with the chance of such a rate without a drift."""
     return Placed(rate.serial, rate.sensor, rate.value, rate.sigma, z, rate.tolerance), rate.significance
 
 
@@ -86,7 +86,7 @@ class Standout:
 
 
 def fleet_standouts(store: Store, most: int) -> tuple[Standout, ...]:
-    """The first of the whole fleet, in one query."""
+    """The units and lots furthest out in the whole fleet, in one query."""
     return standouts(Populations(store).furthest(most))[:most]
 
 

@@ -1,4 +1,4 @@
-"""Step: a long history → what a chart of it shows.
+"""Step: a long history → the points of its chart.
 
 A mark is some eight pixels wide and a chart some three hundred: of sessions that are closer, the extremes cover the
 others.
@@ -11,7 +11,7 @@ from service.outlook.rules.histories import MeasuredChange
 MOST = 120
 """Changes up to which every one is drawn."""
 STRETCHES = 40
-"""Of time, each about as wide as a mark."""
+"""Stretches of time, each about as wide as a mark."""
 LISTED = 50
 """Newest changes that a table lists, drawn or not."""
 
@@ -23,8 +23,9 @@ def kept(changes: Sequence[MeasuredChange]) -> Iterator[tuple[MeasuredChange, bo
 
 
 def drawn(changes: Sequence[MeasuredChange]) -> set[int]:
-    """Which changes of one parameter, oldest first, a chart shows: the last one and, of every stretch, epoch, verdict
-    and tolerance, the first, the lowest and the highest, by value and by the ends of the band."""
+    """The indices of the changes of one parameter, oldest first, that a chart shows: the last one and, of every
+    stretch, epoch, verdict and tolerance, the first, the lowest and the highest, by value and by the ends of the band.
+    """
     if len(changes) <= MOST:
         return set(range(len(changes)))
     start, whole = changes[0].point.at, changes[-1].point.at - changes[0].point.at

@@ -43,7 +43,7 @@ PERIOD = f"^({OVERDUE}|{UNKNOWN}|{MONTH.pattern})$"
 
 
 class DueList(BaseModel):
-    """What must be calibrated when."""
+    """Units by due date."""
 
     counts: tuple[DueCount, ...] = Field(description="How many units are due in each period, whatever `when` asks for.")
     units: tuple[DueLine, ...] = Field(description="The first to come first; 10,000 at most.")

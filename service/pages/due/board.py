@@ -1,4 +1,4 @@
-"""How many units are due when, and the lines of the list."""
+"""Numbers of units due in each period, and the lines of the list."""
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
@@ -15,18 +15,18 @@ from service.pages.due.view import OVERDUE, UNKNOWN, month_after, month_begin
 from service.sessions.words.conditions import condition_of
 
 MONTHS = 12
-"""That have a tile even where nothing is due, with this one."""
+"""Months with a tile even where nothing is due, this one included."""
 
 
 @answer
 @dataclass(frozen=True)
 class DueCount:
-    """How many units are due in one period."""
+    """Number of units due in one period."""
 
     when: str
     """`overdue`, a month such as `2026-12`, or `unknown` where no date is known."""
     units: int
-    """How many."""
+    """Number of units."""
 
 
 @answer
@@ -39,29 +39,31 @@ class DueLine:
     unit_type: str
     """Name of its type."""
     location: str
-    """Where it is."""
+    """Location of the unit."""
     custodian: str
-    """Who has it."""
+    """Custodian of the unit."""
     owner: str
-    """To whom it belongs."""
+    """Owner of the unit."""
     due: datetime | None
-    """When its next calibration is due, UTC; null where that is not known."""
+    """Due date of its next calibration, UTC; null where that is not known."""
     days: int | None
     """Whole days until then; negative where it is overdue."""
     condition: str
-    """By its latest session, in words."""
+    """Condition by its latest session, in words."""
     usable: bool
     """Whether it may be used now."""
     answer: Use
-    """The same, told from a reservation and from what is not known yet."""
+    """Answer, which distinguishes a reservation and a pending result."""
     use: str
-    """The same in words, with what to do."""
+    """The answer in words, with the action."""
     why: str
-    """Why it is due then, or why there is no date."""
+    """Reason for the date, or for having none."""
 
 
 def due_counts(dates: Iterable[datetime | None], now: datetime) -> tuple[DueCount, ...]:
-    """Every unit once: what is overdue, this month and the next ones, later ones where something is due, no date."""
+    """The number of units in each period: overdue, this month and the next ones, later ones where something is due, no
+    date.
+    """
     found = Counter(period(due, now) for due in dates)
     months, start = [], month_begin(now)
     for _ in range(MONTHS):
@@ -72,7 +74,7 @@ def due_counts(dates: Iterable[datetime | None], now: datetime) -> tuple[DueCoun
 
 
 def period(due: datetime | None, now: datetime) -> str:
-    """In which a date lies."""
+    """The period of a due date."""
     if due is None:
         return UNKNOWN
     return OVERDUE if due < now else f"{due:%Y-%m}"
@@ -85,7 +87,7 @@ def period_in_words(when: str) -> str:
 
 
 def due_lines(units: Sequence[UnitSummary], uses: dict[str, Usable]) -> tuple[DueLine, ...]:
-    """Of units, in their order; the dates are those of the calendar of due dates."""
+    """The lines of units, in their order; the dates are those of the calendar of due dates."""
     return tuple(_line(unit, uses[unit.serial]) for unit in units)
 
 

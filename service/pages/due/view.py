@@ -1,4 +1,4 @@
-"""What a visitor of the due list asked to see."""
+"""Filter and order of the due list, in its address."""
 
 import re
 from datetime import UTC, datetime
@@ -44,7 +44,7 @@ class DueView(ListView):
     custodian: Sought = ""
 
     def query(self, now: datetime) -> FleetQuery:
-        """What the store is asked: one unit more than fit on the page."""
+        """The query to the store: one unit more than fit on the page."""
         since, before = self._between(now)
         return FleetQuery(
             due_since=since,

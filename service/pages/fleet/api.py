@@ -46,12 +46,12 @@ FORM = (
     "`Accept` chooses, else it is JSON."
 )
 REPORTS = {**FORMS, XLSX: "xlsx", PDF: "pdf"}
-"""Tables, and what is of the whole fleet."""
+"""Forms of reports: tables, and those of the whole fleet."""
 
 
 @router.get("", responses=errors())
 def read_fleet(store: Reading) -> FleetCondition:
-    """How many units are in which condition."""
+    """The number of units in each condition."""
     return Fleet(store).condition()
 
 

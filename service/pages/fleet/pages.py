@@ -29,14 +29,14 @@ BAR_LIMIT = 150.0
 
 @dataclass(frozen=True)
 class Margin:
-    """How much of its tolerance a parameter uses up, uncertainty included: as words and as a bar."""
+    """Share of its tolerance that a parameter uses, uncertainty included: as words and as a bar."""
 
     words: str
     """``83 ± 71 %``."""
     used: float
     """Length of the bar of the deviation: 100 is the tolerance."""
     reach: float
-    """Where U ends."""
+    """End of U on the bar."""
 
 
 @dataclass(frozen=True)
@@ -49,9 +49,9 @@ class FleetRow:
     word: str
     """The answer alone: ``Do not use``."""
     action: str
-    """What to do; empty where nothing is to be done."""
+    """Action that is due; empty where there is none."""
     reason: str
-    """Why, in one sentence; empty where nothing is to be done."""
+    """Reason for the action, in one sentence; empty where there is none."""
     worst: str
     margin: Margin | None
     last_at: datetime | None
@@ -59,7 +59,7 @@ class FleetRow:
     sessions: int
     simulated: bool
     due: datetime | None
-    """Of the next calibration; None where something else must be done first."""
+    """Date of the next calibration; None where something else must be done first."""
     overdue: bool
     where: str
     """Location and custodian; empty where neither is known."""
@@ -80,7 +80,7 @@ class UseCount:
 
 @dataclass(frozen=True)
 class FleetConcern:
-    """What concerns several units, in a few words, and where it is said in full."""
+    """A matter of several units, in a few words, and the address of its full text."""
 
     words: str
     url: str
@@ -99,24 +99,24 @@ class FleetPage:
     """Whether no session of any unit was measured."""
     simulated: int
     stands: tuple[StandCondition, ...]
-    """That shift every unit measured on them, or did."""
+    """Stands that shift every unit measured on them, or did."""
     standouts: tuple[Standout, ...]
     """Units and lots that drift unlike the others."""
     questioned: tuple[Questioned, ...]
     """Sessions that wait for an engineer, the latest first."""
     together: FoundLine | None
-    """What sessions together show that none shows alone; None where they show nothing."""
+    """Joint findings of sessions that none shows alone; None where there are none."""
     concerns: tuple[FleetConcern, ...]
     choices: FleetChoices
-    """What the list can be narrowed to."""
+    """Possible filters of the list."""
     retired: Mapping[str, str]
-    """What can be shown of retired units, in words."""
+    """Choices for retired units, in words."""
     uses: Mapping[str, str]
-    """Choices of what units may be used for, in words."""
+    """Choices of permitted use, in words."""
     dates: Mapping[str, str]
     """Choices of the next calibration's date, in words."""
     pending: str
-    """What is still being worked out; empty where nothing is."""
+    """Pending work in words; empty where there is none."""
     follow: int | None
     """Seconds until that line looks again; None where it need not."""
 
@@ -147,7 +147,7 @@ def fleet_page(
     pending: str = "",
     follow: int | None = None,
 ) -> FleetPage:
-    """One page of units, and the number of all units by what they may be used for."""
+    """One page of units, and the number of all units by permitted use."""
     shown = Shown.of(view, units, lambda unit: unit.serial)
     return FleetPage(
         view=view,
@@ -227,6 +227,6 @@ def fleet_row(unit: UnitSummary, usable: Usable) -> FleetRow:
 
 
 def margin_of(used: ToleranceUsed) -> Margin:
-    """In per cent of the tolerance."""
+    """The used tolerance as words and a bar, per cent."""
     deviation, expanded = 100 * used.deviation, 100 * used.expanded
     return Margin(used.words, min(deviation, BAR_LIMIT), min(deviation + expanded, BAR_LIMIT))

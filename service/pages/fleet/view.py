@@ -1,4 +1,4 @@
-"""What a visitor of the fleet page asked to see."""
+"""Filter and order of the fleet page, in its address."""
 
 from datetime import datetime, timedelta
 from typing import Annotated, ClassVar
@@ -13,9 +13,9 @@ from service.web.list_view import ListView, Words, one_of
 DUE = {"overdue": "Overdue", "30": "Due within 30 days", "90": "Due within 90 days"}
 """Choices of the next calibration's date, in words."""
 RETIRED = {"only": "Retired units only", "too": "Retired units too"}
-"""What is shown of retired units, in words; none where nothing is asked."""
+"""Choices for retired units, in words; without a choice they are left out."""
 USES = {use.value: word for use, word in WORDS.items()}
-"""Choices of what units may be used for, in words."""
+"""Choices of permitted use, in words."""
 RETIRED_OF = {"": False, "only": True, "too": None}
 
 
@@ -40,10 +40,10 @@ class FleetView(ListView):
     custodian: Sought = ""
     retired: Annotated[Sought, one_of(RETIRED)] = ""
     page: Annotated[int, Field(ge=1, le=1_000_000)] = 1
-    """Its number, for people; what is read begins after a unit."""
+    """Number of the page, for people; reading begins after a unit."""
 
     def query(self, now: datetime) -> FleetQuery:
-        """What the store is asked: one unit more than fit on the page, which says whether there is a next one."""
+        """The query to the store: one unit more than fit on the page, which tells whether there is a next one."""
         until = {"overdue": now, "30": now + timedelta(days=30), "90": now + timedelta(days=90)}
         return FleetQuery(
             use=UseAt(Use(self.use), now) if self.use else None,
@@ -64,11 +64,13 @@ class FleetView(ListView):
         )
 
     def earlier(self, entry: str, *, others: bool) -> str:
-        """The first page is read from its beginning, so that nothing new is missed before it."""
+        """The address of the previous page. The first page is read from its beginning, so that no new entry is missed
+        before it.
+        """
         if self.page <= 2 or not entry:
             return "" if self.page == 1 else self.first()
         return self.url(page=self.page - 1, before=entry, after="")
 
     def later(self, entry: str, *, others: bool) -> str:
-        """With its number."""
+        """The address of the next page, with its number."""
         return self.url(page=self.page + 1, after=entry, before="") if entry and (others or self.before) else ""

@@ -46,7 +46,7 @@ NEWEST = SessionOrder.MEASURED
 """The order of a list that asks for none."""
 BYTES = "application/octet-stream"
 ANY_BYTES = {BYTES: {"schema": {"type": "string", "format": "binary"}}}
-"""How OpenAPI describes a file."""
+"""OpenAPI content of a file."""
 
 
 @router.post(

@@ -1,9 +1,10 @@
 """Two sessions of a unit beside each other.
 
-x_s = θ + J_s c + ε_s of a session s: θ the truth, c the stand's constant errors, ε_s what differs from session to
-session, with covariance R_s. The total covariance of one session is C_s = J_s Σ_c J_sᵀ + R_s. Of two sessions on one
-stand by like schedules, J_1 = J_2 and J c is in both: Var(x_2 − x_1) = R_1 + R_2. On different stands it is C_1 + C_2,
-as the decision rule takes it everywhere; on one stand that is more. (JCGM 102, propagation of covariance.)
+For a session s, x_s = θ + J_s c + ε_s: θ the truth, c the stand's constant errors, ε_s the errors that differ from
+session to session, with covariance R_s. The total covariance of one session is C_s = J_s Σ_c J_sᵀ + R_s. For two
+sessions on one stand by like schedules, J_1 = J_2 and J c is in both: Var(x_2 − x_1) = R_1 + R_2. On different stands
+it is C_1 + C_2, as the decision rule takes it everywhere; on one stand that is more. (JCGM 102, propagation of
+covariance.).
 """
 
 from collections.abc import Mapping, Sequence
@@ -55,14 +56,15 @@ class ComparisonView:
     judged: Judged
     """The later one, judged as if the earlier one were its reference."""
     on_one_stand: Mapping[tuple[str, str], float]
-    """By sensor and parameter: standard uncertainty of the change without what the stand does to both alike. Empty
-    where they were not measured on one stand."""
+    """Standard uncertainty of the change by sensor and parameter, without the stand's effects common to both sessions.
+    Empty where they were not measured on one stand.
+    """
     services: tuple[Service, ...]
-    """Between the two."""
+    """Services between the two."""
 
     @property
     def stand(self) -> str | None:
-        """That both were measured on; None where they were not."""
+        """Stand of both sessions; None where they were not measured on one."""
         return self.first.stand if self.first.stand == self.second.stand else None
 
 
@@ -153,7 +155,7 @@ OTHER_METHOD = "They were measured in different ways, {first} and {second}."
 
 
 def in_common(first: StoredSession, second: StoredSession, services: Sequence[Service]) -> tuple[str, ...]:
-    """One sentence for each matter that there is something to say of."""
+    """Remarks on the two sessions, a sentence each."""
     said = [_stand(first.stand, second.stand), DIRECT]
     if services:
         said.append(say(SERVICED, days=joined(", ", dict.fromkeys(day_of(service.at) for service in services))))
@@ -187,9 +189,9 @@ class ParameterChangeRow:
     """± of the change without what the stand does to both alike; empty where they have no stand in common."""
     tolerance: str
     used: Margin | None
-    """How much of the tolerance the change uses, U included."""
+    """Share of the tolerance that the change uses, U included."""
     condition: Condition | None
-    """None where the parameter is not judged, or not known of both."""
+    """Condition of the change; None where the parameter is not judged, or not known of both."""
 
 
 @dataclass(frozen=True)
@@ -204,7 +206,7 @@ class ComparisonPage:
     in_common: tuple[str, ...]
     motions: tuple[MotionLine, ...]
     rows: tuple[ParameterChangeRow, ...]
-    """By sensor, as they stand in the file."""
+    """Rows by sensor, in the order of the file."""
     is_one_stand: bool
     """Whether both were measured on one stand."""
     coverage: str
@@ -233,7 +235,7 @@ def comparison_page(found: ComparisonView) -> ComparisonPage:
 
 
 def _parameters(before: Calibration, after: Calibration) -> tuple[str, ...]:
-    """That either session speaks of."""
+    """The parameters of either session."""
     told = {*parameters_of(before), *parameters_of(after)}
     return tuple(parameter for parameter in ALL_PARAMETERS if parameter in told)
 

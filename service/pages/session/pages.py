@@ -1,4 +1,6 @@
-"""The page of one session: the verdict and why, the parameters behind it, and how model and readings agree."""
+"""The page of one session: the verdict and its reasons, the parameters behind it, and the agreement of model and
+readings.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -55,7 +57,7 @@ from service.sessions.words.readings import (
 )
 
 NOTHING_KNOWN = Remedies()
-"""Of a session that counts."""
+"""Remedies of a session that counts."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +71,7 @@ class ParameterCell:
     tolerance: str
     probability: str
     condition: Condition | None
-    """None where there is no decision."""
+    """Condition of the decision; None where there is none."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +82,7 @@ class SensorRow:
     kind: str
     cells: tuple[ParameterCell, ...]
     known: tuple[str, ...]
-    """What is known of parameters that the session cannot tell apart."""
+    """Combinations of parameters that are known where the session cannot tell the parameters apart."""
 
 
 @dataclass(frozen=True)
@@ -91,51 +93,51 @@ class SessionView:
     condition: Condition
     reservations: Reservations
     parameters: tuple[str, ...]
-    """Of every row's cells, in their order."""
+    """Parameters of every row's cells, in their order."""
     sensors: tuple[SensorRow, ...]
     fit: FitWords
     parity: ParityView | None
-    """Of a recording in service only."""
+    """View of parity, for a recording in service only."""
     curves: CurvesInWords | None
-    """Of a thermal session only."""
+    """Curves over temperature, for a thermal session only."""
     curve_charts: tuple[ChartSet, ...]
     charts: tuple[ChartSet, ...]
     bands: str
-    """What is drawn of the noise."""
+    """Explanation of the drawn bands of noise."""
     residuals: ResidualTable
     method: str
     rule: str
     coverage: str
     size: str
     temperature: str
-    """Of its readings."""
+    """Temperature of its readings."""
     covered: str
     """The temperatures that the unit's calibrations up to it cover."""
     switched_on: str
-    """How long before the first reading; empty where the file does not say."""
+    """Time from switching on to the first reading; empty where the file does not state it."""
     diagnosis: DiagnosisLine
     gives_correction: bool
     """Whether its programme calibrates every sensor of the block."""
     motions: tuple[MotionLine, ...]
-    """What all sensors did together, in words."""
+    """Motions common to all sensors, in words."""
     laws: tuple[str, ...]
-    """What was taken off for its temperature, in words."""
+    """Corrections for its temperature, in words."""
     state: str
-    """What became of it, said before everything else; empty where it counts."""
+    """State, shown before everything else; empty where it counts."""
     states: tuple[str, ...]
-    """Its life, newest first."""
+    """Changes of state, newest first."""
     remedies: Remedies
-    """What would put it right, where it is questioned."""
+    """Ways to put it right, where it is questioned."""
     traceability: Traceability | None
-    """What its numbers hang on."""
+    """Traceability of its results."""
     said: Remarks | None
-    """What people say of it; None where the page is made without a service."""
+    """Remarks of people on it; None where the page is made without a service."""
     follow: int | None
     """Seconds after which the page looks again whether it is diagnosed; None where it is."""
     retired: str = ""
-    """That its unit is retired, and since when; empty where it is in use."""
+    """Remark that its unit is retired, with the date; empty where it is in use."""
     causes: tuple[str, ...] = ()
-    """In the model that its calibration in force was made under."""
+    """Causes in the model of its calibration in force."""
     earlier: tuple[int, ...] = ()
     """Model revisions that it was calibrated under before."""
 
@@ -207,7 +209,7 @@ def _state(report: SessionReport) -> str:
 
 
 def parameters_of(calibration: Calibration) -> tuple[str, ...]:
-    """The parameters that a session speaks of."""
+    """The parameters that a session concerns."""
     return tuple(p for p in ALL_PARAMETERS if any(p in sensor.observable for sensor in calibration.sensors))
 
 
@@ -241,14 +243,14 @@ def _cell(
 
 
 def reading_units(calibration: Calibration) -> dict[str, str]:
-    """What each sensor is read in, from the unit of its scale factor, ``V/(m/s²)``; pulses are counted over time."""
+    """Reading unit of each sensor, from the unit of its scale factor, ``V/(m/s²)``; pulses are counted over time."""
     units = dict(zip(calibration.names, calibration.units, strict=True))
     found = {s.name: units.get(f"{s.name}.scale", "").partition("/(")[::2] for s in calibration.sensors}
     return {name: f"{unit}/s" if unit.lower() in PULSES else unit for name, (unit, per) in found.items() if per}
 
 
 def value_in_words(sensor: SensorCalibration, parameter: str, coverage: float, reading_unit: str) -> str:
-    """A parameter ± U, or that the session does not tell it; empty where it does not speak of it."""
+    """A parameter ± U, or that it is not observable; empty where the session does not concern it."""
     if not sensor.observable.get(parameter, False):
         return "not observable" if parameter in sensor.observable else ""
     if parameter == "axis":
@@ -288,7 +290,7 @@ def _axis(sensor: SensorCalibration, coverage: float) -> str:
 
 
 def decision_measure(decision: Decision) -> Measure:
-    """That deviation, uncertainty and tolerance are all read in."""
+    """The measure for deviation, uncertainty and tolerance together."""
     sizes = (decision.deviation, decision.expanded, decision.tolerance)
     return deviation_measure(decision.kind, decision.parameter, max(abs(x or 0.0) for x in sizes))
 

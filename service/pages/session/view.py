@@ -1,4 +1,4 @@
-"""What a visitor of the list of sessions asked to see."""
+"""Filter and order of the list of sessions, in its address."""
 
 from contextlib import suppress
 from datetime import UTC, date, datetime, time, timedelta
@@ -50,7 +50,7 @@ class SessionsView(ListView):
     verdict: Annotated[Sought, one_of(VERDICTS)] = ""
 
     def query(self) -> SessionQuery:
-        """What the store is asked: one session more than fit on the page, which says whether there are others."""
+        """The query to the store: one session more than fit on the page, which tells whether there are others."""
         undecided = self.verdict in (UNDECIDED.key, REFERENCE.key)
         judged = Verdict(self.verdict) if self.verdict in set(Verdict) else None
         return SessionQuery(

@@ -1,4 +1,4 @@
-"""The pages of stands: may each be used today, and what its units show of it."""
+"""The pages of stands: permitted use of each today, and its condition by its units."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -63,13 +63,13 @@ class StandLine:
 
     use: StandUse
     condition: StandCondition | None
-    """None where no session tells of it."""
+    """Condition by its units; None where no session shows it."""
     certificates: tuple[StandCertificate, ...]
-    """Oldest issue first."""
+    """Certificates, oldest issue first."""
     flags: int
-    """How many are open that find it at fault."""
+    """Number of open flags that find it at fault."""
     is_pending: bool
-    """Whether what stands do is being worked out with the latest records."""
+    """Whether the stands' conditions are being worked out with the latest records."""
 
 
 @dataclass(frozen=True)
@@ -79,14 +79,14 @@ class StandReport:
     line: StandLine
     flags: tuple[Flag, ...]
     units: tuple[UnitSummary, ...]
-    """Whose latest session was measured on it, the latest first."""
+    """Units whose latest session was measured on it, the latest first."""
     uses: Mapping[str, Usable]
     sessions: tuple[StoredSession, ...]
-    """Newest first."""
+    """Sessions, newest first."""
     models: tuple[ModelRevision, ...]
     """Causes that engineers accepted into its model, and that hold."""
     errors: tuple[StandError, ...] = ()
-    """As the certificate of today states them."""
+    """Errors of the stand as stated by the certificate of today."""
 
 
 def every_stand(store: Store) -> tuple[StandLine, ...]:
@@ -134,7 +134,7 @@ class ListedStand:
     word: StandWord
     condition: str
     certificate: str
-    """Until when sessions are traceable, as a cell of a table."""
+    """Last day of traceable sessions, as a cell of a table."""
     flags: str
 
 
@@ -143,12 +143,12 @@ class StandsPage:
     """Everything the list of stands shows."""
 
     rows: tuple[ListedStand, ...]
-    """What needs a hand first, then by name."""
+    """Stands that need action first, then by name."""
 
 
 @dataclass(frozen=True)
 class ShiftRow:
-    """What the units say of one quantity of the stand: a shift, or that there is none."""
+    """Evidence of the units on one quantity of the stand: a shift, or that there is none."""
 
     what: str
     size: str
@@ -160,7 +160,7 @@ class ShiftRow:
 
 @dataclass(frozen=True)
 class StandPage:
-    """Everything the page of one stand shows; of what is listed, one more would be on the next page."""
+    """Contents of the page of one stand; of each list, one more would be on the next page."""
 
     use: StandUse
     word: StandWord
@@ -170,19 +170,19 @@ class StandPage:
     certificates: tuple[tuple[str, str, str, str], ...]
     """Number, issued by, issued on, valid until; the latest first."""
     errors: tuple[tuple[str, str], ...]
-    """What the certificate of today states an uncertainty of, and ± U."""
+    """Errors stated by the certificate of today, and ± U."""
     flags: tuple[FlagCard, ...]
     shifts: tuple[ShiftRow, ...]
     seating: tuple[tuple[str, str], ...]
     """Quantity, and its scatter from one mounting to the next."""
     unreadable: tuple[str, ...]
-    """Sessions that tell nothing of the stand, because what is stored of them cannot be used."""
+    """Sessions without evidence on the stand, because their stored results cannot be used."""
     units: tuple[FleetRow, ...]
     sessions: tuple[SessionLine, ...]
     causes: tuple[AcceptedCause, ...]
     group: GroupSection | None
     more: tuple[str, ...]
-    """Of ``flags``, ``units`` and ``sessions``, those of which not all are listed."""
+    """Names among ``flags``, ``units`` and ``sessions`` of the lists that are cut."""
 
 
 def stands_page(stands: Sequence[StandLine], now: datetime) -> StandsPage:
@@ -274,7 +274,7 @@ Day = Annotated[date, Form()]
 
 @router.get("/stands")
 def show_stands(request: Request, store: ReadingFleet, now: Now) -> HTMLResponse:
-    """Every stand, what needs a hand first."""
+    """Shows every stand, those that need action first."""
     return render(request, "stands.html", stands_page(every_stand(store), now))
 
 

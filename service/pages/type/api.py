@@ -61,9 +61,9 @@ def change_tolerances(name: TypeName, new: NewTolerances, storage: StorageOf, no
 
 @router.post("/{name:path}/preview", responses=errors(400, 404, 422))
 def preview_change(name: TypeName, new: NewTolerances, store: Reading, settings: SettingsOf) -> TolerancePreview:
-    """What other tolerances would change: the latest sessions of the type's units, judged by them. Nothing is stored.
+    """The effect of other tolerances: the latest sessions of the type's units, judged by them. Nothing is stored.
 
-    At most 100 units are looked at, the worst first; `beyond` says how many were not.
+    At most 100 units are examined, the worst first; `beyond` gives the number of the others.
     """
     gyro = None if new.gyro_tolerances is None else _record(new.gyro_tolerances)
     wanted = WantedTolerances(_record(new.tolerances), gyro)

@@ -1,7 +1,7 @@
-"""What the laws over temperature of a type's units are alike in: learned from their sessions, put in force, taken back.
+"""Temperature laws common to the units of a type: learned from their sessions, put in force, taken back.
 
-They hold like tolerances: from the next session on, with a revision of their own. So no verdict depends on what arrived
-of other units meanwhile.
+They hold like tolerances: from the next session on, with a revision of their own. So no verdict depends on sessions of
+other units that arrived meanwhile.
 """
 
 from collections.abc import Iterator
@@ -37,7 +37,7 @@ from service.units.store import Units
 MOST_LISTED = 500
 """Units of a type that are looked through, by serial number."""
 MOST_UNITS = 50
-"""Units whose sessions are read: some ten seconds; further ones hardly move what is learned."""
+"""Most units whose sessions are read: some ten seconds; further ones hardly change the result."""
 NONE_IN_FORCE = "No temperature laws of this type are in force."
 TOO_FEW = "Too few units: five with ten sensors in all, each measured six times at different temperatures, are needed."
 
@@ -60,7 +60,9 @@ def put_in_force(storage: Storage, name: str, now: datetime, *, who: str, why: s
 
 
 def learned(storage: Storage, name: str) -> tuple[TypeLaw, ...]:
-    """From the sessions that are accepted now; of measured units, or of simulated ones where there is no other."""
+    """The temperature laws learned from the sessions that are accepted now; of measured units, or of simulated ones
+    where there is no other.
+    """
     with storage.database.reading() as store:
         known = UnitTypes(store).get(name)
         units = Fleet(store).units(FleetQuery(unit_type=name, order=Order.SERIAL, limit=MOST_LISTED, retired=None))
@@ -70,7 +72,7 @@ def learned(storage: Storage, name: str) -> tuple[TypeLaw, ...]:
 
 
 def _history(store: Store, serial: str) -> Iterator[UnitHistory]:
-    """Of a unit's latest epoch, where its sessions were at different temperatures; else none."""
+    """The history of a unit's latest epoch, where its sessions were at different temperatures; else none."""
     places = [p for p in places_of(known_unit(store, Units(store).key(serial))) if p.session.programme != IN_SERVICE]
     reference = next((p.reference for p in reversed(places) if p.reference is not None), None)
     sessions = [p.session for p in places if reference is not None and p.reference is reference]

@@ -52,7 +52,7 @@ from service.web.dependencies import Now, Reading, SettingsOf
 from service.web.render import render
 
 MOST_TYPES = 500
-"""In the list: no maker has more kinds of unit."""
+"""Most types in the list: no maker has more kinds of unit."""
 MOST = 25
 """Units that the page of one type lists: a screen; the fleet's page has all."""
 
@@ -73,15 +73,15 @@ class TypeReport:
 
     line: TypeLine
     kinds: Mapping[str, str]
-    """Of its sensors, where a session told."""
+    """Kinds of its sensors, where a session stated them."""
     revisions: tuple[ToleranceRevision, ...]
-    """Of its tolerances, oldest first."""
+    """Revisions of its tolerances, oldest first."""
     setters: Mapping[datetime, str]
-    """Who set the tolerances, by when; the first ones nobody did."""
+    """Persons who set the tolerances, by time; the first ones have none."""
     flags: tuple[Flag, ...]
-    """Open ones on what its sessions show together."""
+    """Open flags on joint findings of its sessions."""
     units: tuple[UnitSummary, ...]
-    """Worst first."""
+    """Units, worst first."""
     uses: Mapping[str, Usable]
     models: tuple[ModelRevision, ...]
     """Causes that engineers accepted into its model, and that hold."""
@@ -111,10 +111,10 @@ def type_report(store: Store, name: str, now: datetime) -> TypeReport:
 
 
 DEFAULTS = "the service itself, with the first session of the type"
-"""Who set tolerances that nobody set."""
+"""Words in place of a person, for the first tolerances of a type."""
 NOT_JUDGED = "not judged"
 KINDS = {ACCELEROMETER: "accelerometer", GYROSCOPE: "gyro"}
-"""Of sensors, as people call them."""
+"""Usual names of the kinds of sensor."""
 
 
 @dataclass(frozen=True)
@@ -125,7 +125,7 @@ class TypeRow:
     block: str
     units: int
     counts: tuple[UseCount, ...]
-    """Worst first, none without a unit."""
+    """Counts by permitted use, worst first, none without a unit."""
     tolerances: tuple[str, ...]
 
 
@@ -154,9 +154,9 @@ class RevisionRow:
     since: datetime
     who: str
     limits: tuple[tuple[str, str], ...]
-    """What is allowed of what."""
+    """Parameters with their limits."""
     laws: str
-    """From how many units the temperature laws in force are."""
+    """Number of units behind the temperature laws in force, in words."""
 
 
 @dataclass(frozen=True)
@@ -166,7 +166,7 @@ class TypePage:
     row: TypeRow
     interval: str
     revisions: tuple[RevisionRow, ...]
-    """Newest first: the first one holds."""
+    """Revisions, newest first: the first one holds."""
     sensors: tuple[SensorModel, ...]
     units: tuple[FleetRow, ...]
     more: bool
@@ -175,13 +175,13 @@ class TypePage:
     causes: tuple[AcceptedCause, ...]
     group: GroupSection | None
     fields: tuple[ToleranceField, ...]
-    """Of the form that sets other tolerances."""
+    """Fields of the form that sets other tolerances."""
     days: str
     """The longest interval, in the form."""
     share: str
-    """Of the tolerance, %, from which on a change has a flag, in the form."""
+    """Share of the tolerance, %, from which on a change has a flag, in the form."""
     laws: tuple[str, ...]
-    """Over temperature, that are in force."""
+    """Temperature laws in force, in words."""
 
 
 def types_page(types: Sequence[TypeLine]) -> TypesPage:
@@ -311,7 +311,7 @@ def set_laws(
 def preview_limits(
     request: Request, name: Key, form: Annotated[dict[str, str], Depends(_form)], store: Reading, settings: SettingsOf
 ) -> HTMLResponse:
-    """What other tolerances would change; nothing is stored."""
+    """Shows the effect of other tolerances; nothing is stored."""
     known = UnitTypes(store).get(name)
     asked = wanted(known, form)
     found = preview_tolerances(
@@ -322,7 +322,7 @@ def preview_limits(
 
 @router.get("/unit-types/{name:path}")
 def show_type(request: Request, store: Reading, now: Now, name: Key) -> HTMLResponse:
-    """One unit type: what is allowed and who allowed it, the nominal model, its units."""
+    """Shows one unit type: its tolerances and who set them, the nominal model, its units."""
     return render(
         request, "unit_type.html", type_page(type_report(store, name, now), group_section(store, Level.TYPE, name))
     )

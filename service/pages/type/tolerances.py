@@ -1,6 +1,6 @@
 """Tolerances are tried, previewed and set.
 
-A recording in service is judged by what was kept of its comparison, as it was with its upload: no file is read.
+A recording in service is judged by its stored comparison, as with its upload: no file is read.
 """
 
 from collections.abc import Iterator, Mapping
@@ -55,12 +55,12 @@ class ToleranceField:
     label: str
     unit: str
     value: str
-    """As it is in force; empty where it is not judged."""
+    """Number in force; empty where it is not judged."""
 
 
 @dataclass(frozen=True)
 class Watch:
-    """How a type's units are watched between calibrations; None leaves it as it is."""
+    """Interval and share for flags of a type's units; None leaves it as it is."""
 
     interval_days: float | None = None
     flag_share: float | None = None
@@ -68,7 +68,7 @@ class Watch:
 
 @dataclass(frozen=True)
 class ToleranceForm:
-    """What the form asks for."""
+    """Values in the form."""
 
     tolerances: Tolerances
     gyro_tolerances: Tolerances | None
@@ -76,7 +76,7 @@ class ToleranceForm:
 
 
 def tolerance_fields(known: UnitType) -> tuple[ToleranceField, ...]:
-    """What can be set, with what is in force."""
+    """The fields that can be set, with the values in force."""
     return tuple(
         ToleranceField(
             f"{kind}.{name}", _label(known, kind, name), _measure(kind, name).label, _text(kind, name, given)
@@ -92,12 +92,12 @@ def days(known: UnitType) -> str:
 
 
 def share(known: UnitType) -> str:
-    """Of the tolerance, %, from which on a change has a flag, as the form has it."""
+    """The share of the tolerance, %, from which on a change has a flag, as text for the form."""
     return f"{100 * known.flag_share:.12g}"
 
 
 def wanted(known: UnitType, form: Mapping[str, str]) -> ToleranceForm:
-    """What a form asks for; RefusedError with every number that is none."""
+    """Reads a form; RefusedError with every number that is none."""
     faults: list[Problem] = []
     read = {kind: Tolerances(**{name: _read(kind, name, given, form, faults) for name in PARAMETERS})
             for kind, given in _kinds(known)}  # fmt: skip
@@ -147,7 +147,7 @@ def _text(kind: str, name: str, given: Tolerances) -> str:
 
 
 def _read(kind: str, name: str, given: Tolerances, form: Mapping[str, str], faults: list[Problem]) -> float | None:
-    """SI; what is in force where the number was not changed."""
+    """The number in SI; the one in force where it was not changed."""
     key, current = f"{kind}.{name}", getattr(given, name)
     text = form.get(key, _text(kind, name, given)).strip()
     number = _number(key, text, faults) if text else None
@@ -196,7 +196,7 @@ def headline_of(found: TolerancePreview) -> str:
 
 
 def notes_of(found: TolerancePreview) -> Iterator[str]:
-    """What was not looked at, and why."""
+    """The notes on units that were not examined."""
     if found.references:
         yield say(
             "{references} not counted: the latest session is a reference, which is not judged.",
@@ -234,9 +234,9 @@ class PreviewPage:
     rows: tuple[VerdictChangeRow, ...]
     notes: tuple[str, ...]
     interval: str
-    """That the form asks for, where it is another one; empty where it stays."""
+    """New interval in the form; empty where it stays."""
     share: str
-    """The same of the share of the tolerance, %."""
+    """New share of the tolerance in the form, %; empty where it stays."""
     carried: tuple[tuple[str, str], ...]
     """Numbers as they were written, to be set as they are."""
     why: str
@@ -245,7 +245,7 @@ class PreviewPage:
 def preview_page(
     known: UnitType, asked: ToleranceForm, form: Mapping[str, str], found: TolerancePreview
 ) -> PreviewPage:
-    """What would change, and the form that sets it."""
+    """The changes under other tolerances, and the form that sets them."""
     other = _others(known, asked.watch)
     return PreviewPage(
         name=known.name,
@@ -317,7 +317,7 @@ def _others(known: UnitType, watch: Watch) -> UnitType:
 
 
 def _differences(was: UnitType, now: UnitType) -> Iterator[tuple[str, dict[str, float]]]:
-    """Lines of the audit trail: what was done, and the numbers."""
+    """Lines of the audit trail: the action and the numbers."""
     for action, name in (("interval", "maximum_interval_days"), ("flag share", "flag_share")):
         before, after = getattr(was, name), getattr(now, name)
         if before != after:
@@ -329,7 +329,9 @@ MOST_UNITS = 100
 
 
 def preview_tolerances(store: Store, name: str, wanted: WantedTolerances, coverage_factor: float) -> TolerancePreview:
-    """By the rule that judges uploads, against the same references; NotFoundError where there is no such type."""
+    """The effect of other tolerances by the rule that judges uploads, against the same references; NotFoundError where
+    there is no such type.
+    """
     known = UnitTypes(store).get(name)
     other = replace(known, tolerances=wanted.tolerances, gyro_tolerances=wanted.gyro_tolerances)
     units = sum(UnitTypes(store).uses(name)[name].verdicts.values())

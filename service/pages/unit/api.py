@@ -1,4 +1,4 @@
-"""Units: their condition, history and known breaks, and whether they may be used."""
+"""Units: their condition, history and known breaks, and their permitted use."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -60,7 +60,7 @@ HISTORY_COLUMNS = {
 
 
 NO_AXIS = (None, None, None)
-"""Of a parameter that is a number."""
+"""Axis of a parameter that is a number."""
 
 
 def history_table(serial: str, points: Sequence[HistoryPoint]) -> "pl.DataFrame":
@@ -151,7 +151,7 @@ def read_outlook(
     reader: ReaderOf,
     until: Annotated[Moment | None, Query(description="Also the risk of waiting until this date.")] = None,
 ) -> OutlookAnswer:
-    """When the unit must come back and why: drift, forecast to tolerance, risk of waiting."""
+    """The unit's next calibration and its reason: drift, forecast to tolerance, risk of waiting."""
     reader.until_dated(serial)
     found = outlook_of(store, serial, now)
     risk = None if until is None else found.risk_by(until)
@@ -167,7 +167,7 @@ def change_lot(serial: Serial, new: NewLot, storage: StorageOf, now: Now, person
 
 @router.get("/{serial:path}/customer", responses=errors(404, 422))
 def read_customer(serial: Serial, store: Reading) -> Customer:
-    """For whom the unit is calibrated."""
+    """The customer for whom the unit is calibrated."""
     return Units(store).customer(serial)
 
 
@@ -199,7 +199,7 @@ def read_unit(serial: Serial, store: ReadingFleet, now: Now) -> UnitReportSchema
 @answer
 @dataclass(frozen=True)
 class UsableAnswer(Usable):
-    """The one question of a ground computer, answered."""
+    """Answer to a ground computer: may the unit be used, and its correction."""
 
     correction: str | None
     """Address of the correction that firmware applies."""
@@ -233,6 +233,6 @@ def read_usable(
 
 
 def _answer(request: Request, found: Usable) -> UsableAnswer:
-    """With the address of the correction."""
+    """The answer with the address of the correction."""
     link = None if found.correction is None else request.url_for("read_correction", id=found.correction).path
     return UsableAnswer(**{**vars(found), "correction": link})

@@ -1,4 +1,4 @@
-"""What happened to a unit, in one list; and the unit as it was found and as it was left."""
+"""Events of a unit in one list; and the unit as found and as left."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -38,10 +38,10 @@ class UnitEvent:
     text: str
     who: str
     note: Note | None
-    """None for a service, which is a break in the history."""
+    """Note; None for a service, which is a break in the history."""
     service: Service | None = None
     withdrawn: str = ""
-    """Of a service that was withdrawn: when, by whom and why."""
+    """Time, person and reason of a service's withdrawal; empty where it is not withdrawn."""
 
 
 @dataclass(frozen=True)
@@ -70,13 +70,13 @@ class StageTable:
     found: StoredSession
     left: StoredSession | None
     rows: tuple[StageRow, ...]
-    """Empty where the unit was found at its reference."""
+    """Rows by parameter; empty where the unit was found at its reference."""
 
 
 def events_of(
     services: Sequence[Service], notes: Sequence[Note], withdrawals: Sequence[StateChange] = ()
 ) -> tuple[UnitEvent, ...]:
-    """Newest first."""
+    """The events of a unit, newest first."""
     gone = {line.record: state_in_words(line) for line in withdrawals}
     listed = [UnitEvent(s.at, service_in_words(s), s.note, s.who, None, s, gone.get(str(s.id), "")) for s in services]
     listed += [UnitEvent(note.at, "Note", note.text, note.who, note) for note in notes]

@@ -1,4 +1,4 @@
-"""The page of one unit: its verdict now, and what it rests on."""
+"""The page of one unit: its verdict now, and the basis of it."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -53,7 +53,7 @@ class NoiseSection:
     charts: ChartSet
     sensors: tuple[str, ...]
     rows: tuple[NoiseRow, ...]
-    """Newest first."""
+    """Rows, newest first."""
 
 
 @dataclass(frozen=True)
@@ -61,14 +61,14 @@ class NoisePart:
     """Everything of noise."""
 
     grown: tuple[str, ...]
-    """What is larger than before, in a sentence each."""
+    """Terms that are larger than before, in a sentence each."""
     sections: tuple[NoiseSection, ...]
     undecided: tuple[str, ...]
     """Names of the terms that no session decides."""
 
 
 def noise_part(points: Sequence[HistoryPoint], services: Sequence[Service], notes: Sequence[Note]) -> NoisePart | None:
-    """Of a unit's terms, oldest first; None where no session tells any."""
+    """The noise of a unit from its terms, oldest first; None where no session has any."""
     if not points:
         return None
     kinds = sorted({point.kind for point in points})
@@ -135,47 +135,47 @@ class UnitView:
     report: UnitReport
     usable: Usable
     word: str
-    """What it may be used for: ``Do not use``."""
+    """Permitted use: ``Do not use``."""
     action: str
-    """What to do; where nothing is to be done, when the next calibration is due."""
+    """Action that is due; where there is none, the date of the next calibration."""
     why: tuple[str, ...]
-    """Why, and how it came to that."""
+    """Reasons for the permitted use, and the course of events."""
     measured: str
-    """When, where and how warm the session that decides was measured; empty before the first."""
+    """Time, place and temperature of the session that decides; empty before the first."""
     due: str
-    """When the next calibration is due, where that does not lead."""
+    """Due date of the next calibration, where that does not lead."""
     worst: ChartSet | None
-    """The history of the parameter that the verdict hangs on; None where none was judged."""
+    """History of the parameter that sets the verdict; None where none was judged."""
     shares: ShareTable | None
     failed: str
-    """That what follows from its latest records could not be worked out, and why; empty else."""
+    """Statement that the results from its latest records could not be computed, with the reason; empty otherwise."""
     parameters: tuple[ParameterHead, ...]
     """Worst first; what each holds is fetched when it is opened."""
     sessions: tuple[SessionLine, ...]
     reference: str
-    """What the next session is judged against, in words; empty when it becomes the reference itself."""
+    """Reference for the next session, in words; empty when that becomes the reference itself."""
     covered: str
     """The temperatures that its calibrations cover."""
     flags: tuple[FlagCard, ...]
-    """Open ones first."""
+    """Flags, open ones first."""
     events: tuple[UnitEvent, ...]
     """Services and notes, newest first."""
     stages: StageTable | None
-    """None where the unit was never marked as found."""
+    """The unit as found and as left; None where it was never marked as found."""
     custody: tuple[Custody, ...]
-    """Where it was and who had it, the latest first."""
+    """Locations and custodians, the latest first."""
     steps: Mapping[CustodyStep, str]
-    """What happened there, in words."""
+    """Steps of custody in words."""
     kinds: tuple[tuple[str, str], ...]
-    """What can be done to a unit: identifier and name."""
+    """Kinds of service: identifier and name."""
     next: NextCalibration | None
-    """None before a session was judged."""
+    """Outlook; None before a session was judged."""
     raw: bool
-    """Whether what the whole block did is left in."""
+    """Whether the common motion of the whole block is left in."""
     noise: NoisePart | None
-    """None where no session was sent as a raw log with rests."""
+    """Noise at rest; None where no session was sent as a raw log with rests."""
     group: GroupSection | None
-    """What its sessions show together; None where that is not made of its records of now."""
+    """Joint diagnosis of its sessions; None where that is not made of its current records."""
     remarks: Remarks | None
     """Files that people attached; None where the page is made without a service."""
     follow: int | None

@@ -23,9 +23,9 @@ PARAMETER_MEANINGS = {
     "axis": "Angle between the input axis and its direction in the reference of its epoch.",
     "misalignment": "Change of the input axis's misalignment to the turn axis since the reference of its epoch.",
 }
-"""What the charts of a parameter show."""
+"""Meanings of the charts, by parameter."""
 TOGETHER = {"axis": "turn", "scale": "change"}
-"""What a whole block does to a parameter."""
+"""Common change of a whole block, by parameter."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class ParameterHead:
 
     @property
     def anchor(self) -> str:
-        """Its name in addresses."""
+        """Name of the parameter and kind in addresses."""
         return f"{self.parameter}-{self.kind}"
 
 
@@ -60,26 +60,27 @@ class ParameterPage:
     serial: str
     head: ParameterHead
     raw: bool
-    """Whether what the whole block did is left in."""
+    """Whether the common motion of the whole block is left in."""
     meaning: str
     together: str
-    """What of the whole block is taken off, in a word; empty where nothing ever is."""
+    """Common change of the whole block that is taken off, in a word; empty where there never is one."""
     tolerance: str
     charts: ChartSet
     sensors: tuple[str, ...]
     rows: tuple[TableRow, ...]
-    """Of the newest sessions."""
+    """Rows of the newest sessions."""
     is_cut: bool
     """Whether sessions before these are drawn."""
     newest: int | None
-    """How many sessions, the newest ones, are drawn; None where all are."""
+    """Number of sessions, the newest ones, that are drawn; None where all are."""
     is_thinned: bool
     """Whether the charts leave out sessions that others cover."""
 
 
 def parameter_heads(latest: Sequence[HistoryPoint], worst: str | None) -> tuple[ParameterHead, ...]:
-    """Of the newest point of every parameter of every sensor, without the terms of noise; by condition, among equals
-    the parameter nearest to its tolerance leads."""
+    """The heads of all parameters from the newest point of each, without the terms of noise; by condition, among equals
+    the parameter nearest to its tolerance leads.
+    """
     groups: dict[tuple[int, str], list[HistoryPoint]] = {}
     for point in latest:
         if point.parameter not in TERMS:

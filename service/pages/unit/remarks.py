@@ -34,15 +34,15 @@ class Remarks:
 
     unit: str
     session: str
-    """Empty for the unit as a whole."""
+    """Id of the session; empty for the unit as a whole."""
     notes: tuple[Note, ...]
     files: tuple[AttachmentLine, ...]
     limit: str
-    """How large a file may be, in words."""
+    """Size limit of a file, in words."""
 
 
 def remarks(unit: str, session: str, notes: Sequence[Note], files: Sequence[Attachment], most_bytes: int) -> Remarks:
-    """Oldest first, as they were said."""
+    """The remarks on one record, oldest first."""
     lines = tuple(AttachmentLine(file, size_in_words(file.size)) for file in files)
     return Remarks(unit, session, tuple(notes), lines, size_in_words(most_bytes))
 

@@ -44,7 +44,7 @@ class NewComment(Body, json_schema_extra={"example": {"text": "the room was warm
 
 attachments_router = APIRouter()
 BYTES = "application/octet-stream"
-"""What nobody vouches for is shown by no browser."""
+"""Media type of attached files: no browser shows unverified content."""
 ANY_BYTES = {BYTES: {"schema": {"type": "string", "format": "binary"}}}
 BODY: Json = {
     "requestBody": {

@@ -27,21 +27,21 @@ class UnitReport:
     summary: UnitSummary
     unit_type: UnitType
     reference_session: str | None
-    """What the next session will be judged against; None when the next one becomes the reference."""
+    """Reference for the next session; None when that becomes the reference."""
     sessions: tuple[StoredSession, ...]
-    """The latest ones, newest first."""
+    """Latest sessions, newest first."""
     services: tuple[Service, ...]
     """All known breaks, oldest first."""
     withdrawn_services: tuple[Service, ...] = ()
     withdrawals: tuple[StateChange, ...] = ()
-    """Of these services: by whom, when and why."""
+    """Withdrawals of these services: by whom, when and why."""
     waiting: int = 0
     """Sessions that are still to be judged again after a change of the records."""
     outlook: UnitOutlook | None = None
-    """None before a session was judged."""
+    """Outlook; None before a session was judged."""
     said: UnitEvents = NO_EVENTS
     entry: Registered | None = None
-    """What the register says."""
+    """Entry in the register."""
 
 
 def covered_now(store: Store, report: UnitReport) -> CoveredTemperatures | None:

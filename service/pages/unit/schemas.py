@@ -70,7 +70,7 @@ class SaidUnit(SaidVerdict, UnitSummary):
 
 
 def said_unit(unit: UnitSummary) -> SaidUnit:
-    """With its verdict in words."""
+    """The unit with its verdict in words."""
     return SaidUnit(**said(unit))
 
 
@@ -80,13 +80,13 @@ class UnitInUse(SaidUnit):
     """One unit in short, and whether it may be used."""
 
     usable: bool
-    """In doubt it is false."""
+    """Whether the unit may be used; false in doubt."""
     use: str
-    """The same in words, with what to do."""
+    """Permitted use in words, with the action."""
 
 
 def units_in_use(store: Store, units: Sequence[UnitSummary], now: datetime) -> list[UnitInUse]:
-    """Units with what they may be used for, in their order."""
+    """Units with their permitted use, in their order."""
     uses = usable_of(store, units, now)
     return [UnitInUse(**said(unit), usable=uses[unit.serial].usable, use=uses[unit.serial].use) for unit in units]
 
@@ -122,12 +122,12 @@ Parameter = Literal[
     "scale", "bias", "quadratic", "axis", "misalignment",
     "quantisation", "white-noise", "bias-instability", "random-walk",
 ]  # fmt: skip
-"""What a calibration gives, and the terms of noise at rest."""
+"""Parameters of a calibration, and the terms of noise at rest."""
 TableForm = Literal["json", "csv", "parquet", "arrow"]
 
 
 class HistoryAsked(BaseModel):
-    """Which part of a unit's history is wanted, and in which form."""
+    """Part and form of a unit's history."""
 
     parameter: Parameter | None = Field(None, description="Only this parameter.")
     sensor: Sought | None = Field(None, description="Only this sensor.")
@@ -150,7 +150,7 @@ class HistoryAsked(BaseModel):
 
     @property
     def query(self) -> HistoryQuery:
-        """The same for the store."""
+        """The query to the store."""
         return copied(HistoryQuery, self, offset=self.window.offset, newest=False, noise=None, kind=None)
 
 

@@ -17,7 +17,7 @@ MOST_HISTORIES = 6
 MOST_RESIDUALS = 12
 """Panels of residuals that are drawn, the first ones; the session's page has all."""
 WIDTH = 235
-"""Of one drawn panel, pixels."""
+"""Width of one drawn panel, pixels."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,9 @@ def _rank(decision: Decision) -> float:
 
 
 def residuals_of(found: CertifiedSession, language: Language) -> tuple[Drawing, ...]:
-    """Against the angle of the head on a stand, the course of a recording in service, else in the order measured."""
+    """Residuals against the angle of the head on a stand, the course of a recording in service, else in the order
+    measured.
+    """
     chart_sets = charts_of_fit(found.report.calibration)
     first = chart_sets[0].name.rpartition("-")[2] if chart_sets else ""
     selected = [

@@ -137,7 +137,7 @@ def _judged_against(found: CertifiedSession) -> str:
 
 
 def _state(found: CertifiedSession) -> str:
-    """As found or as left, and the last service of the unit."""
+    """Stage of the session, as found or as left, and the last service of the unit."""
     last = (
         say("last service: {kind}, {date}", kind=found.services[-1].kind, date=day_of(found.services[-1].at))
         if found.services

@@ -24,7 +24,7 @@ from service.sessions.records import ALL_PARAMETERS
 from service.sessions.words.conditions import condition_of
 
 NOT_OBSERVABLE = "not observable"
-"""In place of a value that the session cannot determine."""
+"""Text in place of a value that the session cannot determine."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class ResultRow:
     """Probability that the true deviation is out of tolerance."""
     verdict: str
     key: str
-    """Of the verdict's colour; empty where nothing is judged."""
+    """Key of the verdict's colour; empty where nothing is judged."""
 
 
 @dataclass(frozen=True)
@@ -134,9 +134,9 @@ class _Results:
     before: Mapping[str, SensorCalibration]
     """The sensors of the reference by name; empty where there is none."""
     judged: Mapping[tuple[str, str], Decision]
-    """By sensor and parameter; empty for a reference."""
+    """Decisions by sensor and parameter; empty for a reference."""
     reading_units: Mapping[str, str]
-    """Of the sensors, by name."""
+    """Units of the readings, by sensor name."""
     counts: bool
     """Whether a gyro counts pulses over a known time."""
     k: float

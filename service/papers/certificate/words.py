@@ -43,7 +43,7 @@ class Paper:
     replaces: str
     """Number of the replaced certificate; empty for a session's first."""
     draft: str
-    """Why it is only a draft; empty where nothing is missing."""
+    """Reason why the paper is only a draft; empty where nothing is missing."""
     parties: tuple[Fact, ...]
     """Laboratory, customer, place."""
     traceability: str
@@ -94,7 +94,7 @@ def _statements(found: CertifiedSession) -> tuple[Fact, ...]:
 
 
 def _traceability(found: CertifiedSession) -> str:
-    """With that of the reference, since every deviation depends on it."""
+    """The traceability of the session with that of its reference, since every deviation depends on it."""
     if found.reference is None:
         return found.traceability.text
     parts = {"traceability": found.traceability.text, "reference_traceability": found.reference.traceability.text}
@@ -117,7 +117,7 @@ class SignatureLine:
 
     by: str
     who: str
-    """Empty where it is signed by hand."""
+    """Name of the signer; empty where it is signed by hand."""
     at: str
     states: str
     bound: str
@@ -192,7 +192,7 @@ class Certificate:
     whole_level: bool
     """Whether a number counts as out of tolerance only if it is a change at the level of all of them."""
     states: tuple[Condition, ...]
-    """Of the decision rule, best first, each explained once."""
+    """Conditions of the decision rule, best first, each explained once."""
     tables: tuple[ResultTable, ...]
     together: tuple[str, ...]
     """Common motion of all sensors since the reference."""

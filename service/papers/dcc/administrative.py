@@ -48,7 +48,7 @@ def administrative(found: StatedSession, issue: Issue, signers: Sequence[Element
 
 
 def signers_of(signed: Signed) -> tuple[Element, ...]:
-    """Those who signed, as ``respPerson``."""
+    """The signers, as ``respPerson``."""
     return tuple(DCC.respPerson(*_signer(signature, signed.sealed_by)) for signature in signed.signatures)
 
 
@@ -173,11 +173,11 @@ def _elevations(source: CalibrationSession) -> Iterator[Element]:
 
 NOTHING_JUDGED = "none: nothing was there to judge it by"
 TRACEABLE = {TraceState.TRACEABLE: "true", TraceState.INTERRUPTED: "false"}
-"""Nothing is claimed for a chain that is not on record."""
+"""Claims of traceability by state; none for a chain that is not on record."""
 
 
 def statements(found: StatedSession) -> Iterator[Element]:
-    """In the order of the paper."""
+    """The statements of the certificate, in the order of the paper."""
     session, decisions = found.report.session, found.report.decisions
     draft = draft_in_words(missing_facts(found.laboratory, found.customer, dated=found.source.started_at is not None))
     if session.simulated:

@@ -17,7 +17,7 @@ NAMESPACES = {
     "si": "https://ptb.de/si",
     "xsi": "http://www.w3.org/2001/XMLSchema-instance",
 }
-"""With PTB's prefixes."""
+"""XML namespaces by PTB's prefixes."""
 NUMBERED = re.compile(r"\d{1,3}(\.\d{1,3}){0,3}")
 """Part of a version that PTB's rules allow after the letter."""
 CONFORMITY = {
@@ -48,7 +48,7 @@ def english(name: str, text: str) -> Element:
 
 
 def software(release: str) -> Element:
-    """This program; a version that is not just numbers is in the name."""
+    """Element of this program; a version that is not only numbers is stated in the name."""
     numbers = NUMBERED.match(release)
     release_number = numbers[0] if numbers else "0"
     name = "imu-health" if release_number == release else f"imu-health {release}"
@@ -93,7 +93,7 @@ class CoverageFactor:
 
     @property
     def probability(self) -> float:
-        """Of an interval ±k·u."""
+        """Coverage probability of an interval ±k·u."""
         return 2.0 * chance(self.k, self.dof) - 1.0
 
     @property

@@ -1,4 +1,4 @@
-"""What the numbers of a certificate can be computed again from, beside the session's file."""
+"""Inputs from which, with the session's file, the numbers of a certificate can be computed again."""
 
 from dataclasses import dataclass
 
@@ -14,26 +14,26 @@ from service.storage.json_text import STORED, json_text
 
 @dataclass(frozen=True, eq=False)
 class RecomputationInputs(Document, format="imu-recomputation/1"):
-    """As it stands in the certificate."""
+    """Inputs of the recomputation as stated in the certificate."""
 
     coverage_factor: float
     """k for known noise."""
     model: Model
     is_reference: bool
     rule: str
-    """With its version and the revision of the tolerances; empty where nothing is judged."""
+    """Decision rule with its version and the revision of the tolerances; empty where nothing is judged."""
     tolerances: tuple[tuple[str, str, float], ...]
     """Kind of sensor, parameter, tolerance: relative for scale, else SI."""
     reference: ReferenceSession | None
     stand_certificate: StandCertificate | None
     laws: tuple[tuple[str, str, TemperatureStep], ...] = ()
-    """Sensor, parameter, and what was taken off for temperature before it was judged."""
+    """Sensor, parameter, and the correction for temperature before the judgement."""
     temperatures: CoveredTemperatures | None = None
-    """That the calibration covers, with the unit's earlier sessions."""
+    """Temperatures covered by the calibration together with the unit's earlier sessions."""
 
 
 def inputs_json(found: CertifiedSession) -> str:
-    """The same certificate gives the same text."""
+    """The inputs of the recomputation as JSON; the same certificate gives the same text."""
     decisions = found.report.decisions
     inputs = RecomputationInputs(
         coverage_factor=nominal_factor_of(decisions),

@@ -127,7 +127,7 @@ def measurement(found: StatedSession) -> Element:
 
 
 def _methods(found: StatedSession) -> Iterator[Element]:
-    """With their versions: methods of measurement, uncertainty and decision."""
+    """Methods of measurement, uncertainty and decision, with their versions."""
     session, calibration = found.report.session, found.report.calibration
     model = (
         f"Model revision {session.revision}; block axes held by {calibration.gauge}; "
@@ -219,7 +219,7 @@ def _deviation(decision: Decision, deviation: float) -> Element:
 
 
 def _limits(decision: Decision, unit: str) -> Iterator[Element]:
-    """Limits of the decision, and what was taken off before it."""
+    """Limits of the decision, and the correction before it."""
     step = decision.temperature_correction
     if step is not None:
         name = f"deviation at {step.temperature:.1f} °C, before the law of {step.sessions} sessions over temperature"

@@ -26,10 +26,11 @@ BARS = {
     Verdict.CONDITIONAL_FAIL: (LIMIT + 1, LIMIT + 1),
     Verdict.FAIL: (LIMIT + 2, LAST // STEP),
 }
-"""First and last bar of a verdict: what is within U of its tolerance has one, so that a better verdict is never to the
-right of a worse one, however large U is."""
+"""First and last bar of a verdict: a unit within U of its tolerance has a bar of its own, so that a better verdict is
+never to the right of a worse one, however large U is.
+"""
 TICKS = list(range(0, LAST + 1, 2 * STEP))
-"""Of the axis of the tolerance: every other bar is numbered, so that numbers do not run into each other."""
+"""Numbered bars of the tolerance axis: every other one, so that the numbers do not overlap."""
 
 
 def fleet_chart(tallies: Iterable[Tally]) -> ChartSet:
@@ -45,12 +46,12 @@ def fleet_chart(tallies: Iterable[Tally]) -> ChartSet:
 
 
 def is_drawn(tally: Tally) -> bool:
-    """Whether its units were judged against their tolerance: of what is undecided no share of it is claimed."""
+    """Whether its units were judged against their tolerance: an undecided unit has no stated share of it."""
     return tally.bar != NOT_JUDGED and tally.verdict is not Verdict.UNDECIDABLE
 
 
 def bar_by_verdict(tally: Tally) -> int:
-    """Its bar, as far as its verdict allows."""
+    """The bar of a tally, within the limits set by its verdict."""
     first, last = BARS.get(tally.verdict, (tally.bar, tally.bar))
     return min(max(tally.bar, first), last)
 

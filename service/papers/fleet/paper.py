@@ -32,7 +32,7 @@ from service.units.records import Service
 MOST_MOVED = 8
 """Parameters of one unit that are listed."""
 SECTION_WIDTH = 330
-"""Of a drawn history, pixels: half of the page."""
+"""Width of a drawn history, pixels: half of the page."""
 T = TypeVar("T")
 
 
@@ -47,7 +47,7 @@ class FleetLine:
     tone: str
     """Colour and mark of its use."""
     use: str
-    """What it may be used for, and what to do."""
+    """Permitted use of the unit, and the action that is due."""
     worst: str
     used: str
     """Share of the tolerance, uncertainty included."""
@@ -65,7 +65,7 @@ class FleetSection:
     moved: tuple[JudgedChange, ...]
     """The parameters that did not pass, worst first."""
     more: int
-    """How many others did not."""
+    """Number of further parameters that did not pass."""
     history: str
     """SVG of the worst parameter through time; empty where there is none."""
     history_of: str
@@ -157,7 +157,7 @@ MOST_NOTICES = 8
 STANDS_OUT = 5.0
 """Distance from the type's other units, in their robust spread."""
 WIDTH = 700
-"""Of the drawn chart, pixels: the whole page."""
+"""Width of the drawn chart, pixels: the whole page."""
 NOT_FIT = (Verdict.FAIL, Verdict.CONDITIONAL_FAIL, Verdict.UNDECIDABLE)
 """Verdicts that somebody must act on: these units get a section."""
 
@@ -205,7 +205,7 @@ def fleet_pdf(store: Store, report: FleetReport, language: Language = Language.E
 
 
 def fleet_paper(store: Store, report: FleetReport, language: Language) -> FleetPaper:
-    """What the paper says."""
+    """The contents of the paper."""
     judged = any(is_drawn(tally) for tally in report.tallies)
     overdue = [due for due in Outlooks(store).due(MOST_NOTICES) if due.at < report.at]
     chart = fleet_chart(report.tallies)

@@ -1,4 +1,4 @@
-"""The whole fleet for a report: what is kept of it, and its units as they are asked for."""
+"""The whole fleet for a report: its stored counts, and its units as they are requested."""
 
 from collections import Counter
 from collections.abc import Mapping

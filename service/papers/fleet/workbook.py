@@ -109,7 +109,7 @@ def _history_row(serial: str, point: HistoryPoint) -> tuple[Cell, ...]:
 
 
 def _units(kind: str, parameter: str) -> tuple[Measure, Measure]:
-    """Of a value and of its change; the same in every row of a parameter, so that columns can be compared."""
+    """Measures of a value and of its change; equal in every row of a parameter, so that columns can be compared."""
     return value_measure(kind, parameter, 0.0), MEASURES[kind, parameter]
 
 

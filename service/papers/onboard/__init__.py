@@ -11,7 +11,7 @@ __all__ = ["FORMS", "Form", "System"]
 
 
 class System(StrEnum):
-    """Whose parameters."""
+    """System for which parameters are written."""
 
     PX4 = "px4"
     ARDUPILOT = "ardupilot"
@@ -21,12 +21,12 @@ class System(StrEnum):
 
 @dataclass(frozen=True)
 class ExportForm:
-    """How a system's parameters are written."""
+    """Form of a system's parameter file."""
 
     name: str
-    """As people call the system."""
+    """Usual name of the system."""
     ending: str
-    """Of the file's name."""
+    """Extension of the file's name."""
     written: Callable[[ExportInput], str]
 
 

@@ -1,4 +1,4 @@
-"""What every parameter file is written from, and what all of them say."""
+"""Input of every parameter file, and the comments common to all of them."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ from service.settings import VERSION
 from service.storage import Storage
 
 STANDARD_GRAVITY = 9.80665
-"""m/s², at which what is left of an accelerometer's error is stated."""
+"""m/s², at which the remaining error of an accelerometer is stated."""
 FRAME = (
     "It corrects the vector that the driver makes of the readings by their nominal scale and axes.",
     "The driver's sensor axes must be the block's.",
@@ -43,26 +43,26 @@ class ExportInput:
     measured_at: datetime
     state: RecordState
     verdict: str
-    """With its reservations, in the words of every page."""
+    """Verdict with its reservations, in the words of every page."""
     use: Usable
-    """What the unit may be used for now."""
+    """Permitted use of the unit now."""
     simulated: bool
     software: str
     vectors: dict[str, NominalVector]
-    """By kind of sensor."""
+    """Nominal vectors by kind of sensor."""
     noise: BlockNoise | None = None
-    """At rest; None where the session holds no rests."""
+    """Noise at rest; None where the session holds no rests."""
     temperature: float | None = None
     """°C that the parameters hold at, of a session with curves over temperature."""
 
     @property
     def accelerometers(self) -> NominalVector | None:
-        """None where the session calibrates none."""
+        """Vector of the accelerometers; None where the session calibrates none."""
         return self.vectors.get(ACCELEROMETER)
 
     @property
     def gyros(self) -> NominalVector | None:
-        """None where the session calibrates none."""
+        """Vector of the gyros; None where the session calibrates none."""
         return self.vectors.get(GYROSCOPE)
 
 
@@ -87,7 +87,7 @@ def heading(given: ExportInput, system: str) -> Iterator[str]:
 
 
 def _uses(given: ExportInput) -> Iterator[str]:
-    """What must be known before the numbers are used."""
+    """The warnings that must be read before the numbers are used."""
     if given.state is not RecordState.ACCEPTED:
         yield f"THIS SESSION IS {given.state.value.upper()}"
     if given.use.answer is not Use.YES:
@@ -105,7 +105,7 @@ def check(given: ExportInput) -> None:
 
 
 def commented(lines: Iterable[str]) -> list[str]:
-    """As comments of all four systems."""
+    """The lines as comments, valid in all four systems."""
     return [f"# {' '.join(line.split())}" for line in lines]
 
 
@@ -134,7 +134,7 @@ MOST_ASKEW = 0.1
 
 @dataclass(frozen=True)
 class Names:
-    """What a system calls them, with a blank for the axis."""
+    """A system's names of the parameters, with a blank for the axis."""
 
     offset: str
     scale: str
@@ -183,8 +183,9 @@ def left_of(given: ExportInput) -> Iterator[str]:
 
 
 def given_of(storage: Storage, id: str, now: datetime) -> ExportInput:
-    """Of a session; NotFoundError where its programme gives no correction, ConflictError where a sensor has none: the
-    vector that a driver makes holds it too."""
+    """The input for a session; NotFoundError where its programme gives no correction, ConflictError where a sensor has
+    none: the vector that a driver makes holds it too.
+    """
     source = corrected(storage, id)
     if source.found.left_out:
         why = "; ".join(f"{name}: {reason}" for name, reason in source.found.left_out)

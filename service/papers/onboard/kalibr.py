@@ -21,7 +21,7 @@ DENSITIES = (
     ("gyroscope_noise_density", GYROSCOPE, "white-noise"),
     ("gyroscope_random_walk", GYROSCOPE, "random-walk"),
 )
-"""Kalibr's names, and what they are of."""
+"""Kalibr's names, with the kind of sensor and the term of noise."""
 TURNED = "C_imu_block turns block axes into Kalibr's, in which the accelerometers' M is lower triangular"
 
 

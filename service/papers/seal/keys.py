@@ -26,7 +26,7 @@ class KeyPair:
     key: Key
     certificate: x509.Certificate
     chain: tuple[x509.Certificate, ...]
-    """Of its issuers, as far as the file holds them."""
+    """Certificates of its issuers, as far as the file holds them."""
 
     @property
     def subject(self) -> str:
@@ -80,7 +80,7 @@ def _usable(key: object) -> Key:
 
 
 def _fault_of(pair: KeyPair) -> str:
-    """What is wrong with it; empty where nothing is."""
+    """The fault of a key pair in words; empty where there is none."""
     public_key, certified_key = pair.key.public_key(), pair.certificate.public_key()
     encoding = Encoding.DER, PublicFormat.SubjectPublicKeyInfo
     if public_key.public_bytes(*encoding) != certified_key.public_bytes(*encoding):

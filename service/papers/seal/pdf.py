@@ -19,7 +19,7 @@ REASON = "Approved calibration certificate"
 
 
 def sealed_pdf(pair: KeyPair, content: bytes) -> bytes:
-    """The same document with a signature appended; no byte before it is changed."""
+    """The document with a signature appended; no byte before it is changed."""
     meta = PdfSignatureMetadata(
         field_name=FIELD,
         reason=REASON,
@@ -35,7 +35,7 @@ def sealed_pdf(pair: KeyPair, content: bytes) -> bytes:
 
 
 def _signer(pair: KeyPair) -> SimpleSigner:
-    """As pyhanko's types."""
+    """The key pair as pyhanko's signer."""
     key = pair.key.private_bytes(Encoding.DER, PrivateFormat.PKCS8, NoEncryption())
     certificates = (Certificate.load(item.public_bytes(Encoding.DER)) for item in (pair.certificate, *pair.chain))
     certificate, *chain = certificates

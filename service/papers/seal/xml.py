@@ -18,7 +18,7 @@ DESCRIPTION = "Digital Calibration Certificate"
 
 
 def sealed_xml(pair: KeyPair, content: bytes) -> bytes:
-    """The same document with a signature over all of it."""
+    """The document with a signature over all of it."""
     is_rsa = isinstance(pair.key, RSAPrivateKey)
     signer = XAdESSigner(
         method=SignatureConstructionMethod.enveloped,
@@ -34,9 +34,9 @@ DS, XADES = "{http://www.w3.org/2000/09/xmldsig#}", "{http://uri.etsi.org/01903/
 
 
 def owner_of_seal(content: bytes, trusted: bytes | None) -> str:
-    """Whose seal a document has; ValueError in words where it does not hold.
+    """The subject of the certificate of a document's seal; ValueError in words where the seal does not hold.
 
-    ``trusted``: the certificate in PEM that it must be of; None takes the one that came with the document.
+    ``trusted``: the certificate in PEM that the seal must be of; None takes the one that came with the document.
     """
     root = etree.fromstring(content)
     try:

@@ -24,8 +24,9 @@ from service.sessions.words.conditions import condition_of
 
 
 def stated_again(raw: RawFile, inputs: RecomputationInputs, printed: Printed, now: datetime) -> StatedSession:
-    """What the certificate should state; SessionError where the file cannot be read, ValueError where what the
-    certificate states cannot be."""
+    """The contents that the certificate should have; SessionError where the file cannot be read, ValueError where the
+    contents of the certificate cannot be.
+    """
     known = _checked(raw, printed, now)
     reference = inputs.reference
     compared_with = reference.calibration if reference and known.session.programme == IN_SERVICE else None
@@ -50,15 +51,16 @@ def stated_again(raw: RawFile, inputs: RecomputationInputs, printed: Printed, no
 def with_reference(
     inputs: RecomputationInputs, reference: ReferenceSession, file: RawFile, now: datetime
 ) -> RecomputationInputs:
-    """With the reference's calibration computed again from its file."""
+    """The inputs with the reference's calibration computed again from its file."""
     new = check(file.content, file.name, now, lambda _: True)
     found = calibrate(new, CalibrationBasis(reference.model, None))
     return replace(inputs, reference=replace(reference, calibration=found.calibration))
 
 
 def _checked(raw: RawFile, printed: Printed, now: datetime) -> Checked:
-    """As at the upload; a file without a date was measured when the certificate says, whose day is UTC's where an
-    earlier release issued it."""
+    """The session checked as at its upload. A file without a date takes the day of the certificate; where an earlier
+    release issued it, this is a day of UTC.
+    """
     new = check(raw.content, raw.name, now, lambda serial: serial == printed.serial)
     if new.session.started_at is None:
         return as_checked(new.session, printed.measured_on, new.session.unit)
@@ -115,7 +117,9 @@ def _reason(found: Calibrated, decisions: tuple[Decision, ...], faults: tuple[Se
 
 
 def _opening(found: Calibrated, printed: Printed) -> str:
-    """What is said of a reference: how it came to be one, the file does not tell."""
+    """The statement on a reference in the words of the printed certificate: the file does not tell how the session
+    became one.
+    """
     said = printed.declared("Verdict")
     ways = [first_in_words(found.calibration, opening) for opening in Opening]
     return next((opening for opening in ways if said.endswith(opening)), ways[0])

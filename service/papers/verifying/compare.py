@@ -18,18 +18,18 @@ WITHOUT_U = 1e-6, 1e-12
 """Relative, and SI: of a number that has none."""
 U = "valueExpandedMU"
 Difference = tuple[str, str, str]
-"""Place, what is printed, what is computed."""
+"""Place, printed value, computed value."""
 Slack = Mapping[Element, tuple[float, ...]]
 """Greatest difference of every number of an element."""
 
 
 def differences(printed: Element, computed: Element) -> Iterator[Difference]:
-    """Where they differ, in the order of the document."""
+    """The differences between two certificates, in the order of the document."""
     return _differences(printed, computed, (), _slack(computed))
 
 
 def numbers_in(root: Element) -> int:
-    """How many numbers a certificate holds."""
+    """The count of numbers in a certificate."""
     return sum(map(len, _slack(root).values()))
 
 
@@ -61,7 +61,9 @@ def _agree(printed: str, computed: str, slack: tuple[float, ...]) -> bool:
 
 
 def _slack(root: Element) -> Slack:
-    """Of every number of a certificate computed again; its elements are held, so that they stay the same."""
+    """Permitted difference of every number of a certificate computed again, by its element; the elements are held, so
+    that they stay the same.
+    """
     found: dict[Element, tuple[float, ...]] = {}
     for real in root.iterfind(".//si:real", NAMESPACES):
         numbers = {str(part.tag).rpartition("}")[2]: part for part in real.iter("{*}*")}
@@ -95,6 +97,6 @@ def _text(element: Element) -> str:
 
 
 def _name(element: Element) -> str:
-    """What it is called; empty where it has no name."""
+    """The name of an element; empty where it has none."""
     found: str = element.findtext("dcc:name/dcc:content", "", NAMESPACES)
     return found

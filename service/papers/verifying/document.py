@@ -1,4 +1,4 @@
-"""Steps: what is checked of the document itself: schema, hash of the contents, electronic seal; and a file's hash."""
+"""Steps: checks of the document itself: schema, hash of the contents, electronic seal; and of a file's hash."""
 
 from itertools import islice
 from pathlib import Path
@@ -16,7 +16,7 @@ from service.papers.verifying.stated import Printed
 
 
 def by_schema(certificate: bytes, folder: Path | None) -> Check:
-    """PTB's schema, where it is at hand."""
+    """The check by PTB's schema, where it is given."""
     if folder is None:
         return Check("schema", Outcome.LEFT_OUT, (say("Give the folder of PTB's schema with --schema."),))
     file = folder / "dcc" / f"v{SCHEMA}" / "dcc.xsd"

@@ -1,4 +1,4 @@
-"""What was checked of a certificate, and what came of it."""
+"""Checks of a certificate and their outcomes."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -9,13 +9,13 @@ MOST = 20
 
 
 class Outcome(StrEnum):
-    """What a check says."""
+    """Outcome of a check."""
 
     AGREES = "agrees"
     DIFFERS = "differs"
     NOT_CHECKED = "cannot be checked"
     LEFT_OUT = "not asked for"
-    """What takes another file or setting; it decides nothing."""
+    """The check takes another file or setting; it decides nothing."""
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class Check:
     subject: str
     outcome: Outcome
     says: tuple[str, ...] = ()
-    """Sentences: what was found, every difference, or why it cannot be checked."""
+    """Sentences: the result, every difference, or the reason why it cannot be checked."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class RawFile:
 
     @property
     def sha256(self) -> str:
-        """As certificates name it."""
+        """SHA-256 of the file, hexadecimal, as certificates state it."""
         return sha256(self.content).hexdigest()
 
 

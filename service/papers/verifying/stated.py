@@ -1,4 +1,4 @@
-"""What a certificate states and its session's file does not tell: it is set into the one computed again."""
+"""Contents of a certificate that the session's file does not tell; they are set into the one computed again."""
 
 import json
 from base64 import b64decode
@@ -25,7 +25,7 @@ class Printed:
     root: Element
 
     def text(self, path: str) -> str:
-        """Of one element; empty where there is none."""
+        """Text of one element; empty where there is none."""
         return (self.root.findtext(path, "", NAMESPACES) or "").strip()
 
     def identified(self, name: str) -> str:
@@ -38,17 +38,17 @@ class Printed:
 
     @property
     def serial(self) -> str:
-        """Of the unit."""
+        """Serial number of the unit."""
         return self.text(f"{ITEM}dcc:identifications/dcc:identification/dcc:value")
 
     @property
     def unit_type(self) -> str:
-        """Its name."""
+        """Name of the unit type."""
         return self.text(f"{ITEM}dcc:model")
 
     @property
     def version(self) -> str:
-        """Of the program that made it."""
+        """Version of the program that made the certificate."""
         name = self.text(".//dcc:dccSoftware/dcc:software/dcc:name/dcc:content")
         release = self.text(".//dcc:dccSoftware/dcc:software/dcc:release").removeprefix("v")
         return name.removeprefix("imu-health").strip() or release
@@ -65,17 +65,17 @@ class Printed:
 
     @property
     def signers(self) -> Sequence[Element]:
-        """Those who signed; the operator stands before them."""
+        """Elements of the signers; the operator stands before them."""
         return deepcopy(self.root.findall(".//dcc:respPersons/dcc:respPerson", NAMESPACES)[1:])
 
     @property
     def inputs_document(self) -> Sequence[Element]:
-        """Where the inputs of the recomputation stand."""
+        """Elements that hold the inputs of the recomputation."""
         return deepcopy(self.root.findall("dcc:document", NAMESPACES))
 
     @property
     def laboratory(self) -> Laboratory:
-        """Who issued it."""
+        """Laboratory that issued the certificate."""
         contact = ".//dcc:calibrationLaboratory/dcc:contact/"
         country = self.text(f"{contact}dcc:location/dcc:countryCode") or self.text(f"{CORE}dcc:countryCodeISO3166_1")
         elsewhere = self.text(f"{CORE}dcc:performanceLocation") == "other"
@@ -84,7 +84,7 @@ class Printed:
 
     @property
     def customer(self) -> Customer:
-        """For whom."""
+        """Customer of the certificate."""
         return Customer(*self._contact(".//dcc:customer/"))
 
     def _contact(self, path: str) -> tuple[str, str]:
@@ -93,13 +93,15 @@ class Printed:
         return name, address
 
     def issue(self) -> Issue:
-        """Under which number; ValueError where its date is none."""
+        """Number and date of the certificate; ValueError where its date is none."""
         date = datetime.fromisoformat(self.text(f"{CORE}dcc:issueDate")).replace(tzinfo=UTC)
         replaced = self.text(f"{CORE}dcc:reportAmendedSubstituted/dcc:replacedUniqueIdentifier") or None
         return Issue(self.text(f"{CORE}dcc:uniqueIdentifier"), self.identified("Session"), 0, date, "", replaced, "")
 
     def inputs(self) -> RecomputationInputs | None:
-        """What its numbers rest on; None in one of a release that stated none, ValueError where they cannot be read."""
+        """Inputs of the recomputation; None in a certificate of a release that stated none, ValueError where they
+        cannot be read.
+        """
         encoded = self.text("dcc:document/dcc:dataBase64")
         if not encoded:
             return None

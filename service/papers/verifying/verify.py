@@ -1,6 +1,6 @@
-"""Steps: a certificate and its session's file → every check, with what is printed and what is computed.
+"""Steps: a certificate and its session's file → every check, with the printed and the computed values.
 
-Nothing of the service that issued it is asked: what the file does not tell stands in the certificate itself.
+The issuing service is not asked: facts that the file does not tell are in the certificate itself.
 """
 
 from collections.abc import Iterator
@@ -25,12 +25,12 @@ from service.settings import VERSION
 
 ROOT = f"{{{NAMESPACES['dcc']}}}digitalCalibrationCertificate"
 UNREADABLE = (ValueError, LookupError, ArithmeticError)
-"""What comes of inputs that somebody changed."""
+"""Errors raised by inputs that somebody changed."""
 
 
 @dataclass(frozen=True)
 class Beside:
-    """What else a stranger may have."""
+    """Optional files for further checks."""
 
     schema: Path | None = None
     """Folder with ``dcc/v3.3.0/dcc.xsd``."""
@@ -40,7 +40,7 @@ class Beside:
 
 
 def verify(certificate: bytes, raw: RawFile, beside: Beside, now: datetime) -> Verification:
-    """Every check of a certificate."""
+    """Makes every check of a certificate."""
     try:
         root = parsed(certificate)
     except etree.XMLSyntaxError as fault:

@@ -26,9 +26,9 @@ ALGORITHMS = ("RS256", "PS256", "ES256", "RS384", "RS512", "ES384", "EdDSA")
 """Signatures with a public key; never `none`, never a shared key."""
 SCOPE = "openid profile email"
 TIMEOUT = httpx.Timeout(5.0)
-"""Seconds: a person is waiting."""
+"""Timeout, seconds: a person is waiting."""
 MOST_BYTES = 256 * 1024
-"""Of an answer: metadata, a set of keys, a token."""
+"""Most bytes of an answer: metadata, a set of keys, a token."""
 LEEWAY = 60
 """Seconds by which clocks may differ."""
 SILENT = "The sign-in provider does not answer as it should; try again, or sign in with a password."

@@ -1,1 +1,1 @@
-"""What raises flags and settles them, one reason a file."""
+"""Steps that raise and settle flags, one reason a file."""

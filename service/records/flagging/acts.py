@@ -1,4 +1,4 @@
-"""What the service does to a flag: raises it, sees its matter again, resolves it."""
+"""The service's acts on a flag: raises it, sees its matter again, resolves it."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -9,28 +9,28 @@ from service.fleet.store import Fleet
 from service.storage.queries import Store
 
 SERVICE = "imu-health"
-"""Who raises flags."""
+"""Name under which the service raises flags."""
 
 
 @dataclass(frozen=True)
 class Occasion:
-    """On which unit, by what and when flags are settled."""
+    """Unit, session and time at which flags are settled."""
 
     unit: int
     session: str | None
-    """That was looked at; None where the clock or the other units tell."""
+    """Session that was evaluated; None where the clock or other units decide."""
     at: datetime
 
 
 def raise_flag(store: Store, occasion: Occasion, concern: Concern) -> None:
-    """Opens a flag on a matter that the clock or the other units tell of, and that has none open."""
+    """Opens a flag on a matter that the clock or the other units decide, and that has none open."""
     number = Flags(store).add(occasion.unit, concern, occasion.session, occasion.at)
     tell(store, occasion, NoticeKind.RAISED, concern.summary, number)
     Fleet(store).count_flags(occasion.unit)
 
 
 def see_again(store: Store, occasion: Occasion, known: Flag, concern: Concern) -> None:
-    """The open flag speaks of the latest session; one that was acknowledged is raised again where it got worse."""
+    """Updates an open flag by the latest session; an acknowledged one is raised again where it got worse."""
     worse = concern.severity > known.severity and known.state is FlagState.ACKNOWLEDGED
     Flags(store).put(
         known.id,

@@ -1,8 +1,8 @@
-"""Step: what the history of a unit's sensors shows means a flag: one a sensor, of its worst kind of change.
+"""Step: the history of a unit's sensors → flags, one a sensor, for its worst kind of change.
 
-It has one where somebody must act (`is_worth_a_flag`); a smaller change is a remark. A sensor that is, or
-is flagged, out of tolerance has no second one for how it came there, nor one whose drift has made the calibration due
-that is overdue. What a person resolved stays resolved until a later session.
+A change has a flag where somebody must act (`is_worth_a_flag`); a smaller change is a remark. A sensor that is, or is
+flagged, out of tolerance has no second one for the change behind it, nor has one whose drift has made the calibration
+due that is overdue. A flag that a person resolved stays resolved until a later session.
 """
 
 from collections.abc import Iterator
@@ -93,7 +93,7 @@ def _by_sensor(outlook: UnitOutlook) -> dict[str, list[Found]]:
 
 
 def _unknown(found: dict[str, list[Found]], settled: dict[Key, Moment]) -> dict[str, list[Found]]:
-    """Without jumps that a person knew of when the sensor's flag was resolved: they are over."""
+    """The changes without jumps that a person knew of when the sensor's flag was resolved: they are over."""
     known = {sensor: at for (matter, sensor), (at, _) in settled.items() if matter == Matter.JUMP}
     return {
         sensor: [pair for pair in changes if pair[1].kind in GOES_ON or not _is_before(pair[1], known.get(sensor))]
@@ -135,11 +135,12 @@ def is_worth_a_flag(trend: ParameterTrend, change: FoundChange, outlook: UnitOut
 
 
 def taken_by(change: FoundChange, years: float) -> float:
-    """What a change takes of the tolerance, SI or relative: a jump its size, a drift what it adds in so many years,
-    aging that of its first year, from which on it slows, a walk what it has come to."""
+    """The share of the tolerance that a change takes, SI or relative: a jump its size, a drift its growth in so many
+    years, aging that of its first year, after which it slows, a walk its present size.
+    """
     return abs(change.size) * (years if change.kind == "drift" else 1.0)
 
 
 def comes_back(outlook: UnitOutlook, unit_type: UnitType) -> datetime:
-    """When the next calibration is due; where the unit waits for no date, the longest interval from the latest."""
+    """The due date of the next calibration; where the unit waits for no date, the longest interval from the latest."""
     return outlook.due or outlook.risk[0].at + timedelta(days=unit_type.maximum_interval_days)

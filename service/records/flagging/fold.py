@@ -1,9 +1,9 @@
 """Step: the open flags of a unit from its accepted sessions, one after another in the order of time.
 
-A session raises a matter, a later one shows it again or finds it in order. What a diagnosis no longer finds is closed
-with its reason; that a sensor was out of tolerance only a person settles. What a person resolved stays resolved until a
-session measured later than those that the person had seen shows it again. So the open flags are a function of the
-accepted sessions and of what people resolved, in whatever order the files came in.
+A session raises a matter, a later one shows it again or finds it in order. A matter that a diagnosis no longer finds is
+closed with its reason; only a person settles that a sensor was out of tolerance. A matter that a person resolved stays
+resolved until a session measured later than those that the person had seen shows it again. So the open flags are a
+function of the accepted sessions and of people's resolutions, in whatever order the files came in.
 """
 
 from collections.abc import Iterable, Iterator
@@ -39,7 +39,7 @@ from service.storage.queries import Store
 from service.units.store import Units
 
 PASSES = (Verdict.PASS, Verdict.CONDITIONAL_PASS)
-"""Verdicts that speak for resolving one."""
+"""Verdicts by which a flag could be resolved."""
 WITHIN = "The session of {day} finds every parameter of {sensor} within its tolerance."
 ALL_WITHIN = "The session of {day} finds every sensor within its tolerance."
 NEW_REFERENCE = "{sensor} is now judged against the session of {day}."
@@ -119,7 +119,7 @@ def flag_diagnosis(store: Store, made: StoredDiagnosis, at: datetime) -> None:
 
 
 def _clear(session: StoredSession) -> Iterator[tuple[str, str, str]]:
-    """What the session no longer shows where it names nothing; on one stand it says nothing of another."""
+    """The matters that a session without findings closes; on one stand it says nothing of another."""
     gone = say(NO_LONGER_FOUND, day=day_of(session.started_at))
     yield Matter.CAUSE.value, ANY, gone
     yield Matter.UNEXPLAINED.value, ANY, gone
@@ -145,10 +145,11 @@ def _concerns(found: Diagnosed, session: StoredSession, accepted: tuple[ModelRev
 def _of_finding(
     finding: Finding, findings: tuple[Finding, ...], session: StoredSession, known: set[tuple[str, str]]
 ) -> Iterator[Concern]:
-    """Where several causes are equally possible, all that are known must act on the sensor, or all on the stand.
+    """The concerns of a finding. Where several causes are equally possible, all known ones must act on the sensor, or
+    all on the stand.
 
-    A mere change since earlier sessions is left to the tolerances: they say whether it matters. What only several
-    sessions show together has a flag of theirs. A course that sensors share is one matter, of the unit.
+    A mere change since earlier sessions is left to the tolerances: they decide whether it matters. An effect found only
+    in several sessions together has a flag of its own. A course that sensors share is one matter, of the unit.
     """
     if finding.over_sessions is not None:
         return
@@ -163,9 +164,11 @@ def _of_finding(
 
 
 MATTERS = (Matter.TOLERANCE, Matter.CAUSE, Matter.UNEXPLAINED)
-"""That a unit's own sessions decide; the rest rests on sessions on a stand, on the clock and on other units."""
+"""Matters that a unit's own sessions decide; the rest depends on sessions on a stand, on the clock and on other
+units.
+"""
 ANY = "*"
-"""Every place."""
+"""Stands for every place."""
 
 
 @dataclass(frozen=True)
@@ -174,15 +177,15 @@ class Opened:
 
     concern: Concern
     session: str
-    """The last one that showed it."""
+    """Last session that showed it."""
     at: Moment
-    """Of that session."""
+    """Moment of that session."""
     proposal: str = ""
 
 
 @dataclass(frozen=True)
 class Lives:
-    """What is left after the sessions so far."""
+    """Open and closed matters after the sessions so far."""
 
     opened: dict[Key, Opened]
     closed: dict[Key, str]
@@ -217,7 +220,7 @@ def _faulty_stands(sessions: Iterable[SessionEvidence]) -> Iterator[str]:
 
 
 def _lives(sessions: Iterable[SessionEvidence], opened: Iterable[Flag]) -> Lives:
-    """What is open and what no longer is, after a unit's sessions one after another."""
+    """The open and the closed matters after a unit's sessions, one after another."""
     lives = Lives({}, {})
     for session in sessions:
         kept = tuple(_concern(flag) for flag in opened if flag.session == session.at[1]) if session.is_old else ()
@@ -228,8 +231,9 @@ def _lives(sessions: Iterable[SessionEvidence], opened: Iterable[Flag]) -> Lives
 
 
 def _after(lives: Lives, evidence: FlagEvidence, at: Moment) -> Lives:
-    """A sensor out of tolerance is left to a person, who says why it is back; what a diagnosis found is closed by one
-    that no longer finds it."""
+    """The matters after one more session. A sensor out of tolerance is left to a person, who states why it is back; a
+    finding of a diagnosis is closed by one that no longer has it.
+    """
     shown = {c.key: Opened(c, at[1], at) for c in evidence.concerns if c.matter in MATTERS}
     clear = {(matter, place): why for matter, place, why in evidence.clear}
     gone = {key: why for key in lives.opened if (why := clear.get(key) or clear.get((key[0], ANY)))}

@@ -1,8 +1,8 @@
-"""Step: what a group of sessions shows means a flag: raised once an effect, of whose it is: the unit,
-the type or the stand. It keeps the unit whose session showed it last.
+"""Step: the findings of a group of sessions → flags, one an effect, on the unit, the type or the stand that has it. A
+flag keeps the unit whose session showed it last.
 
-An effect that an engineer accepted into the model is known and has none, nor has one that a worse flag covers. What a
-person resolved stays resolved; what the sessions no longer show is closed.
+An effect that an engineer accepted into the model is known and has none, nor has one that a worse flag covers. A flag
+that a person resolved stays resolved; one whose effect the sessions no longer show is closed.
 """
 
 from collections.abc import Iterable
@@ -29,12 +29,12 @@ from service.units.store import Units
 def no_longer_overdue(
     store: Store, occasion: Occasion, outlook: UnitOutlook | None, latest: StoredSession | None = None
 ) -> tuple[Flag, ...]:
-    """The one matter that resolves itself: nothing is due, or not yet. What is open still is returned, and says what is
-    due now.
+    """Resolves flags on overdue units, the one matter that resolves itself, where nothing is due any more. Returns the
+    open ones, with the present due date.
 
-    ``latest``: the unit's latest calibration, the reason where it came after the flag was raised.
-    It is raised as time passes (`overdue_units`) and not here: records that are entered late, one after another, would
-    raise and resolve it with every one.
+    ``latest``: the unit's latest calibration, the reason where it came after the flag was raised. These flags are
+    raised as time passes (`overdue_units`) and not here: records that are entered late, one after another, would raise
+    and resolve one with every record.
     """
     opened = tuple(flag for flag in Flags(store).open_of(occasion.unit) if flag.matter is Matter.OVERDUE)
     concern = overdue_by(outlook, occasion.at)
@@ -50,7 +50,7 @@ def no_longer_overdue(
 
 
 def overdue_by(outlook: UnitOutlook | None, now: datetime) -> Concern | None:
-    """What is said of a unit whose date has passed; None of any other."""
+    """The concern of a unit whose date has passed; None for any other."""
     if outlook is None or outlook.due is None or outlook.due >= now:
         return None
     return Concern(Matter.OVERDUE, "", 1, was_due(outlook.due, outlook.reason))
@@ -59,7 +59,7 @@ def overdue_by(outlook: UnitOutlook | None, now: datetime) -> Concern | None:
 NO_LONGER_SHOWN = "The sessions together no longer show it."
 COVERED = "Another flag covers it."
 OF_SENSORS = (Matter.TOLERANCE, Matter.CAUSE, Matter.JUMP, Matter.DRIFT)
-"""Of flags whose place is a sensor."""
+"""Matters of flags whose place is a sensor."""
 ACCEPTED = "Accepted into the model of {whose}, revision {revision}."
 
 
@@ -117,7 +117,7 @@ def _settle(
 
 
 def settle_accepted(store: Store, revision: ModelRevision, finding: GroupFinding, at: datetime) -> None:
-    """What an engineer accepted into a model is known."""
+    """Resolves the flags on an effect that an engineer accepted into a model: it is known."""
     place = lasting_place(revision.scope, revision.subject, finding)
     for flag in Flags(store).of_group(Matter.LASTING, place):
         if flag.place == place and flag.state is not FlagState.RESOLVED:

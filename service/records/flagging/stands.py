@@ -1,9 +1,9 @@
-"""Step: what sessions and units show of a stand means a flag of the stand, one a matter, that names the units.
+"""Step: findings on a stand by sessions and units → flags of the stand, one a matter, that name the units.
 
-Sessions on it are taken in the order of time, whatever unit they measure: one finds the stand at fault, a
-later one of a block of the same kind no longer does. A shift shows in the common motions of its units, looked
-at now and then. What is no longer found is closed with its reason; what a person resolved stays resolved until a later
-session shows it again.
+Sessions on it are taken in the order of time, whatever unit they measure: one finds the stand at fault, a later one of
+a block of the same kind no longer does. A shift shows in the common motions of its units, which are examined now and
+then. A matter that is no longer found is closed with its reason; one that a person resolved stays resolved until a
+later session shows it again.
 """
 
 from collections.abc import Iterable
@@ -27,7 +27,7 @@ from service.storage.queries import Store
 from service.units.store import Units
 
 OF_STAND = "The flag of the stand covers it."
-"""Of a flag on one unit, as an earlier version raised them."""
+"""Reason for resolving a flag on one unit, as an earlier version raised them."""
 NOT_SHOWN = "No accepted session still shows it."
 SEEN_WITH = "Seen with {units}."
 MOST_NAMED = 12
@@ -38,13 +38,13 @@ MOST_NAMED = 12
 class _Fault:
     concern: Concern
     at: Moment
-    """Of the last session that shows it."""
+    """Moment of the last session that shows it."""
     units: tuple[str, ...]
-    """That showed it since it was last found in order."""
+    """Units that showed it since it was last found in order."""
 
 
 def settle_stand(store: Store, occasion: Occasion, stand: str) -> None:
-    """Brings the flag on what sessions find on a stand in line with all accepted sessions on it."""
+    """Brings the flag on a stand in line with the findings of all accepted sessions on it."""
     Stands(store).hold(stand)
     found, why = _fault(Derivations(store).evidence_on_stand(stand), stand)
     opened = _open(store, Matter.STAND, stand)
@@ -57,7 +57,7 @@ def settle_stand(store: Store, occasion: Occasion, stand: str) -> None:
 
 
 def _fault(sessions: Iterable[SessionEvidence], stand: str) -> tuple[_Fault | None, str]:
-    """What is open, and else why nothing is."""
+    """The open fault of a stand, or else the reason why none is open."""
     by_block: dict[str, _Fault] = {}
     why = NOT_SHOWN
     for session in sessions:
@@ -89,7 +89,7 @@ def _open(store: Store, matter: Matter, stand: str) -> tuple[Flag, ...]:
 
 
 def _bring(store: Store, occasion: Occasion, opened: tuple[Flag, ...], concern: Concern) -> None:
-    """Raises the flag, or says in the open one what is known now."""
+    """Raises the flag, or updates the open one."""
     if not opened:
         raise_flag(store, occasion, concern)
     for flag in opened:
@@ -118,7 +118,7 @@ def flag_shifted_stands(storage: Storage, now: datetime, alone: Alone = plainly)
 
 
 def _flag_shift(storage: Storage, condition: StandCondition, now: datetime) -> None:
-    """An open flag says what is known now, also where the shift is dated anew. It is of the unit that comes first."""
+    """Raises or updates the flag on a shift, also where the shift is dated anew. It is on the unit that comes first."""
     since = min(shift.since for shift in condition.shifts if shift.until is None)
     with storage.database.writing() as store:
         Stands(store).hold(condition.stand)
@@ -138,7 +138,7 @@ def _is_known(store: Store, stand: str, since: datetime) -> bool:
 
 
 def _close(storage: Storage, flag: Flag, now: datetime) -> None:
-    """A flag that no unit speaks for any more, or that one unit had of its own."""
+    """Closes a flag that no unit supports any more, or that one unit had of its own."""
     why = say(NO_LONGER_SHIFTED, stand=flag.place) if flag.scope is Scope.STAND else OF_STAND
     with storage.database.writing() as store:
         unit = Units(store).hold(flag.unit)

@@ -1,4 +1,4 @@
-"""What to measure so that a session settles what it leaves open."""
+"""Measurements that would settle the open points of a session."""
 
 from estimator.message import joined, say, say_count
 from estimator.results import Calibration
@@ -7,7 +7,7 @@ from service.kit.measures import number
 
 
 def what_to_add(calibration: Calibration) -> str:
-    """The rows that would tell what a session leaves open."""
+    """The rows that would determine the open parameters of a session."""
     flipped, add = calibration.residuals.flipped, calibration.fit.add
     if flipped is not None and len(set(flipped)) == 1:
         return "measure the same positions in the other run too"
@@ -23,7 +23,7 @@ def what_to_add(calibration: Calibration) -> str:
 
 
 def too_few(calibration: Calibration) -> str:
-    """That the session gives no uncertainty, and what to add; empty where it gives one."""
+    """The sentence that the session gives no uncertainty, with the remedy; empty where it gives one."""
     add = calibration.fit.positions_to_add
     if not add:
         return ""
@@ -35,7 +35,9 @@ def too_few(calibration: Calibration) -> str:
 
 
 def left_open(calibration: Calibration) -> str:
-    """What a calibration does not show of its accelerometers, and what to add; empty where it shows all it must."""
+    """The parameters that a calibration does not observe of its accelerometers, with the remedy; empty where it
+    observes all.
+    """
     needed = ("scale", "bias", "axis")
     felt = [s for s in calibration.sensors if s.kind == ACCELEROMETER and set(needed) <= set(s.observable)]
     blind = [s.name for s in felt if not all(s.observable[name] for name in needed)]

@@ -13,16 +13,16 @@ from service.sessions.states import RecordState, StateChange
 
 @dataclass(frozen=True)
 class Condition:
-    """How one verdict is shown. ``key`` is also the name of its icon and its style."""
+    """Presentation of one verdict. ``key`` is also the name of its icon and its style."""
 
     key: str
     word: str
-    """Of a unit, a session or a parameter, read from across the room."""
+    """Word for a unit, a session or a parameter, to be read from across the room."""
     shape: str
     """The mark in charts (Vega's name), the same as the icon's outline."""
     meaning: str
     reserved: bool = False
-    """Whether the verdict has a reservation; the mark beside it says so too."""
+    """Whether the verdict has a reservation; the mark beside it shows that too."""
 
     @property
     def rank(self) -> int:
@@ -55,11 +55,11 @@ QUESTIONED = Condition(
 NOT_JUDGED = Condition("none", "Not judged", "circle", "No tolerance or no reference is set.")
 
 CONDITIONS = (UNFIT, PROBABLY_UNFIT, UNDECIDED, PROBABLY_FIT, FIT)
-"""Worst first, as they are listed."""
+"""Conditions, worst first, as they are listed."""
 RANKS = {condition.key: rank for rank, condition in enumerate(CONDITIONS)}
 """Place by key."""
 WITH_RESERVATION = "with reservation"
-"""What is added to the word of a verdict that something speaks against."""
+"""Addition to the word of a verdict that has a reservation."""
 RESERVED = Condition(
     "reserved", "With reservation", "stroke",
     "A finding about the session qualifies the verdict; it is stated.",
@@ -75,14 +75,14 @@ _BY_VERDICT = {
 
 
 def condition_of(verdict: Verdict | None, *, is_reference: bool = False) -> Condition:
-    """How a verdict is shown; None is a unit without a session. A reference is undecidable for a good reason."""
+    """The presentation of a verdict; None is a unit without a session. A reference is undecidable for a good reason."""
     if is_reference and verdict is Verdict.UNDECIDABLE:
         return REFERENCE
     return NOT_MEASURED if verdict is None else _BY_VERDICT[verdict]
 
 
 def said_with(condition: Condition, reservations: Reservations) -> Condition:
-    """The same verdict, marked where it has a reservation: ``Fit, with reservation``."""
+    """The condition, marked where it has a reservation: ``Fit, with reservation``."""
     if not reservations:
         return condition
     return replace(
@@ -117,11 +117,11 @@ def state_in_words(change: StateChange) -> str:
 LOOKING = "the search for causes is not finished"
 STILL_LOOKING = say("; {looking}", looking=LOOKING)
 MOST_TOLD = 2
-"""Reservations that a verdict names before the rest are counted: more are no longer read in one breath."""
+"""Most reservations that a verdict names before the rest are counted: more are hard to read at once."""
 
 
 def but(reservations: Reservations) -> str:
-    """What follows a verdict's word: nothing where it is plain."""
+    """The reservations after a verdict's word; empty where there are none."""
     if reservations is None:
         return STILL_LOOKING
     if not reservations:
@@ -130,7 +130,7 @@ def but(reservations: Reservations) -> str:
 
 
 def but_alone(reservations: Reservations) -> str:
-    """The same where no word stands before it."""
+    """The reservations where no word stands before them."""
     if reservations is None:
         return LOOKING
     named, more = reservations[:MOST_TOLD], len(reservations) - MOST_TOLD
@@ -144,7 +144,7 @@ def but_alone(reservations: Reservations) -> str:
 
 
 def advice_of(reservations: Sequence[Reservation]) -> tuple[str, ...]:
-    """What to do, once, and not what other advice says already; a wrong file is corrected before anything else."""
+    """The advice, without repetitions; a wrong file is corrected before anything else."""
     if any(reservation.kind is Doubt.RECORD for reservation in reservations):
         reservations = [reservation for reservation in reservations if reservation.kind is Doubt.RECORD]
     advice = tuple(dict.fromkeys(reservation.advice for reservation in reservations))

@@ -1,4 +1,4 @@
-"""Bias and scale factor over temperature in words: what a session says of each, and what it shows beside the curves."""
+"""Bias and scale factor over temperature in words, and the findings beside the curves."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -13,9 +13,9 @@ from estimator.session import Array
 from service.kit.measures import COVERAGE, deviation_measure, measured
 
 NAMES = {"scale": "scale factor", "bias": "bias"}
-"""Of the parameters that follow temperature."""
+"""Names of the parameters that follow temperature."""
 MINUTE = 60.0
-"""s."""
+"""Seconds in a minute."""
 
 
 @dataclass(frozen=True)
@@ -25,16 +25,16 @@ class CurveRow:
     sensor: str
     parameter: str
     order: int
-    """Of the polynomial."""
+    """Order of the polynomial."""
     cold: str
     """Change from the reference to the lowest temperature, ± U of the value there."""
     hot: str
-    """The same to the highest."""
+    """Change from the reference to the highest temperature, ± U of the value there."""
 
 
 @dataclass(frozen=True)
 class CurvesInWords:
-    """What a thermal session says."""
+    """Curves of a thermal session, in words."""
 
     reference: str
     """Temperature that all other numbers of the session hold at."""
@@ -50,7 +50,7 @@ def celsius(temperature: float) -> str:
 
 
 def curves_in_words(calibration: Calibration) -> CurvesInWords | None:
-    """None where the session holds no curves."""
+    """The curves of a session; None where it holds none."""
     curves = calibration.thermal
     if curves is None:
         return None

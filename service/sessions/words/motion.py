@@ -1,4 +1,4 @@
-"""Step: what all sensors of a block did together since the reference, in plain sentences."""
+"""Step: the common motions of a block's sensors since the reference → plain sentences."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -27,7 +27,7 @@ class MotionLine:
 def motions_in_words(
     motions: Sequence[CommonMotion], coverage: float, since: str = "since the reference"
 ) -> tuple[MotionLine, ...]:
-    """One sentence for each quantity that there is something to say of."""
+    """One sentence for each quantity with a common motion to report."""
     several = len({motion.kind for motion in motions}) > 1
     kind_words = {motion.kind: say(" of the {kind}s", kind=motion.kind) if several else "" for motion in motions}
     lines = [_line(motion, coverage, kind_words[motion.kind], since) for motion in motions]
@@ -88,7 +88,7 @@ def _beyond(motion: CommonMotion, coverage: float, of_kind: str, since: str) -> 
 
 
 def _turn_measure(motion: CommonMotion) -> Measure:
-    """Of a block that was mounted otherwise, degrees."""
+    """The measure of a turn: degrees where the block was mounted otherwise."""
     if motion.size >= DEGREE:
         return COARSE_MEASURES[motion.kind, "axis"]
     return deviation_measure(motion.kind, "axis", motion.size)
@@ -104,7 +104,7 @@ def _about(motion: CommonMotion) -> str:
 
 
 def _alone(motion: CommonMotion) -> str:
-    """Who did not move with the others."""
+    """The sentence on sensors that did not move with the others."""
     if not motion.left_out:
         return ""
     parameter = "input axis" if motion.quantity == AXES else "scale factor"

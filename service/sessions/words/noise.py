@@ -1,4 +1,4 @@
-"""The terms of noise at rest in words: their sizes, what a record does not decide, and what became larger."""
+"""The terms of noise at rest in words: their sizes, those that a record does not decide, and those that grew."""
 
 from collections.abc import Collection, Sequence
 from itertools import groupby
@@ -21,7 +21,7 @@ NAMES = {
     "random-walk": "Random walk K",
     "quantisation": "Quantisation Q",
 }
-"""The one that most records decide first."""
+"""Names of the terms, the one that most records decide first."""
 MEANINGS = {
     "white-noise": "Scatter of a one-second average at rest: velocity or angle random walk.",
     "bias-instability": "Flicker noise of the bias at rest: averaging does not get below about two thirds of it.",
@@ -32,7 +32,7 @@ NOT_DECIDED = "cannot be determined from a record of this length"
 SEVERAL = 3
 """Sensors of a kind, from which on all of them together are named in one sentence."""
 LEVEL = 0.01
-"""Chance that a unit whose noise is the same is said to have become noisier, over all its sensors and terms."""
+"""Chance that an unchanged unit is reported as noisier, over all its sensors and terms."""
 
 
 def size_in_words(kind: str, name: str, value: float | None, sigma: float | None) -> str:
@@ -53,12 +53,14 @@ def size_in_words(kind: str, name: str, value: float | None, sigma: float | None
 
 
 def term_in_words(point: HistoryPoint) -> str:
-    """The same of a point of the history."""
+    """The size of a term at a point of the history."""
     return size_in_words(point.kind, point.parameter, point.value, point.u)
 
 
 def grown(points: Sequence[HistoryPoint]) -> tuple[str, ...]:
-    """What is larger in the newest record than before, in a sentence each; ``points`` of one unit, oldest first."""
+    """The terms that are larger in the newest record than before, in a sentence each; ``points`` of one unit, oldest
+    first.
+    """
     decided = [p for p in points if p.parameter in TERMS and p.value and p.u]
     if not decided:
         return ()
@@ -140,7 +142,9 @@ def wrong_errors(noise: Sequence[NoiseScale], kinds: Collection[str]) -> tuple[s
 
 
 def but_wrong_errors(noise: Sequence[NoiseScale], kinds: Collection[str]) -> str:
-    """The same as the end of a sentence: ``, but the stated …``; empty where the readings contradict none."""
+    """The wrong standard errors as the end of a sentence: ``, but the stated …``; empty where the readings contradict
+    none.
+    """
     clauses = _clauses(noise, kinds)
     return (
         say(", but {clause}", clause=joined(" and ", (say("the {clause}", clause=clause) for clause in clauses)))
@@ -168,7 +172,7 @@ def _whose(scale: NoiseScale, kinds: Collection[str]) -> str:
 
 
 def _how_far_off(factor: float) -> str:
-    """Of the factor by which they are too small; below one they are too large."""
+    """The size of the error, from the factor by which they are too small; below one they are too large."""
     if not isfinite(factor) or factor <= 0:
         return "wrong by an unknown factor"
     side = "small" if factor > 1 else "large"

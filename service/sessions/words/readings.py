@@ -1,4 +1,4 @@
-"""How model and readings agree, in words. What fits or does not is a unit, so no other thing is said to."""
+"""Agreement of model and readings in words. The words fit and unfit are kept for units."""
 
 from dataclasses import dataclass, replace
 from math import isfinite, sqrt
@@ -22,7 +22,7 @@ SMALLEST = 1e-4
 
 @dataclass(frozen=True)
 class FitWords:
-    """How model and readings agree, for people."""
+    """Agreement of model and readings, for people."""
 
     headline: str
     detail: str
@@ -30,7 +30,7 @@ class FitWords:
 
 
 def fit_in_words(calibration: Calibration) -> FitWords:
-    """What χ² and its probability say, and what to be careful of."""
+    """The agreement by χ² and its probability, with warnings."""
     fit = calibration.fit
     headline = too_few(calibration) or _headline(fit)
     left_out = sentences(calibration.set_aside)
@@ -40,12 +40,14 @@ def fit_in_words(calibration: Calibration) -> FitWords:
 
 
 def beside_screening(words: FitWords, calibration: Calibration) -> FitWords:
-    """The same, first what was found in the raw rows that the readings were made of."""
+    """The words with the findings in the raw rows of the readings put first."""
     return replace(words, warnings=(*(finding.message for finding in calibration.screening), *words.warnings))
 
 
 def bands_in_words(calibration: Calibration, times: float | None) -> str:
-    """What the bands beside residuals are; ``times``: how much wider the noise found is drawn, None where it is not."""
+    """Explanation of the bands beside residuals; ``times``: by how much the noise found is drawn wider, None where it
+    is not.
+    """
     if calibration.residuals.enlarged_by is None:
         return "The band is ±2σ of the noise that the calibration uses."
     stated = calibration.fit.noise == "stated"
@@ -111,7 +113,7 @@ def _warnings(fit: Fit) -> list[str]:
 
 
 def _open(calibration: Calibration) -> list[str]:
-    """What the session leaves open, and what to add."""
+    """The parameters that the session leaves open, with the remedy."""
     fit = calibration.fit
     if fit.rank >= fit.parameters:
         return []
@@ -133,7 +135,7 @@ READING_TERMS = {
     "sensitivity_z": ("K·e_z", 1),
     "quadratic_reading": ("K·c", 2),
 }
-"""What readings are linear in: how it is written, and the power of the input that it multiplies."""
+"""Terms that readings are linear in: symbol, and the power of the input that it multiplies."""
 NEGLIGIBLE = 1e-6
 """Share of the largest term below which a term is not written: six decimals show nothing of it."""
 

@@ -50,11 +50,11 @@ class TableContents(_Part):
     columns: tuple[str, ...]
     rows: int = Field(ge=0)
     sha256: str = Field(pattern=HASH)
-    """Of the lines."""
+    """SHA-256 of the lines."""
 
     @property
     def member(self) -> str:
-        """Its name in the backup."""
+        """Name of the table in the backup."""
         return f"tables/{self.name}.jsonl"
 
 
@@ -63,19 +63,19 @@ class Manifest(_Part):
 
     format: Literal["imu-backup/1"] = "imu-backup/1"
     version: str
-    """Of the program that wrote it."""
+    """Version of the program that wrote it."""
     revision: str
-    """Of the schema."""
+    """Revision of the schema."""
     made_at: datetime
     tables: tuple[TableContents, ...]
-    """In order of insertion: referenced tables come first."""
+    """Tables in order of insertion: referenced tables come first."""
     files: tuple[Hash, ...]
     lost: tuple[str, ...]
     """Hashes of files that sessions name, but that were missing or damaged when the backup was made."""
 
     @property
     def members(self) -> set[str]:
-        """Every name in the backup."""
+        """Names of all members of the backup."""
         return {MANIFEST, *(table.member for table in self.tables), *map(file_member, self.files)}
 
 
@@ -134,7 +134,7 @@ def faulty_names(archive: zipfile.ZipFile, table: TableContents) -> Iterator[str
 
 
 def _name(column: str, value: Any) -> Any:
-    """None where the row names no file."""
+    """The hash or place of a row's file; None where the row names no file."""
     if column == HASHES or value is None:
         return value
     document = json.loads(value)

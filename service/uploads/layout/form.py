@@ -34,9 +34,9 @@ from service.web.dependencies import Now, UploadSlotOf, limited
 MOST_CARRIED = 4 * 1024 * 1024
 """Bytes of a file that the page itself carries until it is confirmed; a larger one is stored temporarily."""
 MOST_FIELDS = 5000
-"""Of the form: two for each of 300 columns, a few for each sensor."""
+"""Most fields of the form: two for each of 300 columns, a few for each sensor."""
 INFLATION = 1.4
-"""Of bytes encoded as text: 4/3, and the form around them."""
+"""Growth of bytes encoded as text: 4/3, and the form around them."""
 CHOSEN = ("sheet", "encoding", "separator", "decimal", "header_row", "first_row")
 """Settings of the parser that can be chosen."""
 TEXTS = ("unit", "unit_type", "operator", "notes", "programme", "block", "stand.id")
@@ -64,10 +64,10 @@ class LayoutForm:
     """Contents of the form."""
 
     file: SentFile
-    """Empty where it was not sent again."""
+    """Sent file; empty where it was not sent again."""
     fields: Mapping[str, str]
     mapping: Json | None
-    """As on the previous page; None at first."""
+    """Mapping of the previous page; None at first."""
     owner: str = ""
     """Login of the sender; empty where there are no accounts."""
 
@@ -119,10 +119,10 @@ def _require_text(fields: Mapping[str, str]) -> None:
 
 @dataclass(frozen=True)
 class Carried:
-    """How a table returns with its page: one of the two is set."""
+    """Table returned with its page: one of the two is set."""
 
     content: str = ""
-    """Its bytes as text, for a small table."""
+    """Bytes of a small table as text."""
     aside: str = ""
     """The hash under which it is stored temporarily."""
 
@@ -204,7 +204,7 @@ def _column(fields: Mapping[str, str], k: int, before: Any) -> Json:
 
 
 def _session(fields: Mapping[str, str], before: Any, columns: list[Json]) -> Json:
-    """The facts with what was written; an empty field states nothing."""
+    """The facts with those from the form; an empty field states nothing."""
     session = json.loads(json.dumps(before if isinstance(before, dict) else {}))
     for key in (*TEXTS, *NUMBERS):
         if f"fact.{key}" in fields:
@@ -261,7 +261,7 @@ def _value(text: str) -> float | str | None:
 
 
 def _sensors(fields: Mapping[str, str], session: Mapping[str, Any], columns: list[Json]) -> list[Json]:
-    """One sensor per column of readings, with known facts and what was written."""
+    """One sensor per column of readings, with known facts and those from the form."""
     known = {s.get("name"): s for s in session.get("sensors") or () if isinstance(s, dict)}
     sensor_columns = [column for column in columns if column["as"] and is_sensor(column["as"])]
     axes = _arranged(fields, len(sensor_columns))
@@ -295,7 +295,7 @@ def _arranged(fields: Mapping[str, str], count: int) -> list[list[float] | None]
 
 
 def half_angle_of(fields: Mapping[str, str]) -> float | None:
-    """Degrees, of the cone; None where what is written is no angle of one."""
+    """Half angle of the cone, degrees; None where the written number is no angle of one."""
     angle = _value(fields.get("cone_angle", ""))
     if angle is None:
         return HALF_ANGLE
@@ -316,7 +316,7 @@ def _axis(text: str) -> list[float | str]:
 
 
 def _fault_of_direction(numbers: Sequence[float | str]) -> str:
-    """What is wrong with an azimuth and an elevation; empty where nothing is, or where they are none."""
+    """The fault of an azimuth and an elevation; empty where there is none, or where they are not given."""
     azimuth, elevation = numbers if len(numbers) == DIRECTION else ("", "")
     if isinstance(azimuth, str) or isinstance(elevation, str):
         return ""
@@ -328,7 +328,7 @@ def _fault_of_direction(numbers: Sequence[float | str]) -> str:
 
 
 def faults_of(form: LayoutForm) -> tuple[Problem, ...]:
-    """What is wrong with numbers that are only in the form, and not in the mapping that is made from it."""
+    """The faults of numbers that are only in the form, and not in the mapping that is made from it."""
     fields = form.fields
     faults = [
         Problem(say("{name}: input axis", name=key.split(".")[1]), fault)
@@ -342,7 +342,7 @@ def faults_of(form: LayoutForm) -> tuple[Problem, ...]:
 
 
 def filled_in(session: Mapping[str, Any], facts: Mapping[str, Any]) -> Json:
-    """What was written, completed by the facts; sensors by their names."""
+    """The session's fields completed by the facts; sensors by their names."""
     by_name = {sensor["name"]: sensor for sensor in facts.get("sensors", ())}
     merged = dict(session)
     for key, value in facts.items():

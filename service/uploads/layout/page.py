@@ -1,4 +1,4 @@
-"""The page of a table of custom layout: how each column is read, what is missing, and the first rows."""
+"""The page of a table of custom layout: the mapping of each column, the missing facts, and the first rows."""
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
@@ -32,7 +32,7 @@ OFFSETS = (
     "+05:30", "+05:45", "+06:00", "+06:30", "+07:00", "+08:00", "+08:45", "+09:00", "+09:30", "+10:00", "+10:30",
     "+11:00", "+12:00", "+12:45", "+13:00", "+13:45", "+14:00",
 )  # fmt: skip
-"""Of the time zones in use."""
+"""Offsets from UTC of the time zones in use."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ class ColumnRow:
 
 @dataclass(frozen=True)
 class SensorFields:
-    """One sensor with what is known of it."""
+    """One sensor with its known facts."""
 
     name: str
     kind: str
@@ -122,7 +122,7 @@ class LayoutPage:
     units: tuple[str, ...] = UNITS
     can_store: bool = False
     changed: bool = False
-    """Whether it was confirmed, but differs from what was shown."""
+    """Whether it was confirmed, but differs from the shown page."""
 
 
 def layout_page(carried: Carried, preview: Preview, form: LayoutForm, types: Sequence[str]) -> LayoutPage:

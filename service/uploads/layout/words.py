@@ -1,4 +1,4 @@
-"""What the page calls the fields of a mapping, and its faults in the words of a form instead of a file."""
+"""Names of a mapping's fields on the page, and its faults in the words of a form instead of a file."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -72,7 +72,7 @@ IN_FORM = {
     "another column is also read as {meaning}; remove one": "another column is also read as {meaning}; leave one out",
     "has no rows; give one row per reading": "no column is read as anything yet; choose them",
 }
-"""Templates of a file's faults that speak of its keys or its notation, and what a form says instead."""
+"""Templates of a file's faults in terms of its keys or its notation, and their wording in a form."""
 
 
 def said_on_page(problems: Sequence[Problem], mapping: Mapping[str, Any]) -> tuple[Problem, ...]:
