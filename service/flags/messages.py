@@ -101,7 +101,7 @@ class Outbox:
             return Webhooks(store).claim(now, now + CLAIM, AT_A_TIME, busy)
 
     def put(self, outgoing: Outgoing, ended: "Ended") -> None:
-        """Keeps what became of an attempt."""
+        """Stores the outcome of an attempt."""
         state, at = _after(outgoing, ended, self.clock())
         with self.storage.database.writing() as store:
             Webhooks(store).put(outgoing.delivery, state, ended.outcome, at)
@@ -109,11 +109,11 @@ class Outbox:
 
 @dataclass(frozen=True)
 class Ended:
-    """What became of an attempt."""
+    """The outcome of an attempt."""
 
     accepted: bool
     outcome: str
-    """What the receiver said, or why it could not be asked."""
+    """The receiver's answer, or why it could not be asked."""
     is_last: bool = False
     """Whether another attempt would end the same way."""
 
@@ -200,7 +200,7 @@ async def _attempt(outgoing: Outgoing, ways: Ways, http: "httpx.AsyncClient") ->
 
 
 def _after(outgoing: Outgoing, ended: Ended, now: datetime) -> tuple[DeliveryState, datetime]:
-    """What it is then, and when it ended or is sent next: pauses double from one attempt to the next."""
+    """State of a delivery after an attempt, and its end or next attempt: pauses double from one attempt to the next."""
     if ended.accepted:
         return DeliveryState.DELIVERED, now
     if ended.is_last or outgoing.attempt >= MOST_ATTEMPTS:

@@ -108,9 +108,9 @@ class FlagsPage:
     people: tuple[str, ...]
     """Whom a flag can be given to; empty where anybody may be named."""
     pending: str
-    """What is still being worked out, and may change the list; empty where nothing is."""
+    """Work in progress that may change the list, in words; empty where there is none."""
     waiting: tuple[WaitingMatter, ...]
-    """What waits for the reader beside flags; on the first page of the whole list only."""
+    """Matters beside flags that wait for the reader; on the first page of the whole list only."""
 
 
 def flags_page(
@@ -169,7 +169,7 @@ To = FormText
 
 @router.get("")
 def show_flags(request: Request, store: Reading, person: PersonOf, now: Now, view: Asking) -> HTMLResponse:
-    """What waits for the reader: the open flags of the fleet, worst first, or those that the address asks for."""
+    """Shows the open flags of the fleet, worst first, or those that the address asks for, after what else waits."""
     if view.assigned == ME and not person.login:
         view = view.model_copy(update={"assigned": ""})
     found = Flags(store).page(view.query(assignee_meant(store, view.assigned, person)))

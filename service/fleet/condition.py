@@ -134,7 +134,7 @@ class FleetCondition:
     overdue: Hidden[int] = 0
     """Number of units whose calibration is overdue; 0 where that was not asked."""
     references: int = 0
-    """Of how many the latest session is a reference, which nothing was held against."""
+    """Number of units whose latest session is a reference, which nothing was held against."""
     uncalibrated: int = 0
     """Number of registered units without a session that counts."""
 

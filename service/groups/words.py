@@ -28,7 +28,7 @@ FAILED = (
 LONGEST_PLACE = 200
 """Characters that a flag keeps of its place."""
 LONGEST_SUBJECT = 100
-"""Those of a name in it."""
+"""Sentences about a name in it."""
 SHARED = "They share structure that no known cause explains."
 SOUND = "Nothing wrong found."
 UNKNOWN = "Structure that no known cause explains."

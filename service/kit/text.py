@@ -9,7 +9,7 @@ import re
 from estimator.message import say
 
 NUL = r"\x00"
-"""What PostgreSQL cannot hold."""
+"""The one character that PostgreSQL cannot hold."""
 OF_LINES = r"\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u2028\u2029"
 """Control characters but tabs and ends of lines, and the separators of lines and paragraphs."""
 OF_A_LINE = r"\x00-\x1f\x7f-\x9f\u2028\u2029"
@@ -19,7 +19,7 @@ _SURROGATES = r"\ud800-\udfff"
 
 
 def fault_of_text(text: str, refused: str = OF_LINES, *, is_required: bool = False) -> str | None:
-    """What is wrong with a text; None where nothing is."""
+    """The fault of a text; None where it has none."""
     if is_required and not text.strip():
         return "must not be blank"
     found = re.search(f"[{refused}{_SURROGATES}]", text)

@@ -1,4 +1,4 @@
-"""What waits for a person beside flags, by who can act: sessions, certificates, failed work, overdue units."""
+"""Matters beside flags that wait for a person, by who can act: sessions, certificates, failed work, overdue units."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -32,7 +32,7 @@ class WaitingMatter:
     of: str
     """The unit, the session's unit, or the piece of work."""
     text: str
-    """What is to be done or known, in a sentence."""
+    """The thing to do or to know, in a sentence."""
     since: datetime | None
     """Since when, UTC; None where that is not known."""
     page: str
@@ -40,7 +40,7 @@ class WaitingMatter:
 
 
 def waiting_for(store: Store, person: Person, now: datetime) -> tuple[WaitingMatter, ...]:
-    """What this person can do something about beside flags, kind by kind."""
+    """The matters beside flags that this person can do something about, kind by kind."""
     found = list(_overdue(store, now)) if person.may(Role.CREW) else []
     if person.may(Role.ENGINEER):
         found += _questioned(store)

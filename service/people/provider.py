@@ -64,7 +64,7 @@ LONGEST_SUBJECT = 255
 
 
 def fault_of_subject(subject: str) -> str | None:
-    """What is wrong with the identifier of a person at the provider; None where nothing is."""
+    """The fault of a person's identifier at the provider; None where it has none."""
     if len(subject) > LONGEST_SUBJECT:
         return say("is longer than {longest} characters", longest=LONGEST_SUBJECT)
     return fault_of_text(subject, OF_A_LINE, is_required=True)

@@ -60,7 +60,7 @@ class _Unit:
 
 @contextmanager
 def _alone(url: str, serial: str) -> Iterator[None]:
-    """What follows from many changes of a unit at once is worked out once or twice: whoever comes meanwhile finds it
+    """Works out the consequences of many changes of a unit at once, once or twice: whoever comes meanwhile finds them
     done."""
     with _own:
         unit = _units.setdefault((url, serial), _Unit())

@@ -101,7 +101,7 @@ def _has_other_type(entry: NewEntry, known: Registered | None) -> bool:
 
 
 def _known(store: Store, rows: Sequence[tuple[int, NewEntry]], refusal: str) -> dict[str, Registered]:
-    """What is known of the units of some rows; RefusedError with every problem of theirs."""
+    """The known units of some rows; RefusedError with every problem of theirs."""
     serials = [entry.serial for _, entry in rows]
     known, measured = Register(store).find(serials), Register(store).measured(serials)
     problems = [

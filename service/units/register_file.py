@@ -26,7 +26,7 @@ MOST_COLUMNS = 50
 """So many that a table may have others beside those of the register, which are named in its refusal."""
 MOST_CELLS = MOST_ROWS * MOST_COLUMNS
 MOST_PROBLEMS = 500
-"""That are named; nobody mends more before trying again."""
+"""Problems that a refusal names; nobody mends more before trying again."""
 LONGEST = {"note": 2000}
 SHORT = 200
 """Characters of any other field."""

@@ -84,7 +84,7 @@ class Typed:
 
 
 Sought = Annotated[str, StringConstraints(max_length=200), Typed(NUL)]
-"""What is looked for: an earlier release stored other characters than `Text` allows."""
+"""A text to look for: an earlier release stored other characters than `Text` allows."""
 Text = Annotated[str, StringConstraints(max_length=200), Typed(OF_A_LINE)]
 LongText = Annotated[str, StringConstraints(max_length=2000), Typed(OF_LINES)]
 Name = Annotated[str, StringConstraints(max_length=200), Typed(OF_A_LINE, is_required=True)]

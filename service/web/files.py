@@ -51,7 +51,7 @@ BINARY = {"schema": {"type": "string", "format": "binary"}}
 """Schema of a table in OpenAPI."""
 TABLES: Json = {media: BINARY for media, form in FORMS.items() if form != "json"}
 BY_HEADER = {"Vary": "Accept"}
-"""Of an answer whose form depends on the header `Accept`."""
+"""Headers of an answer whose form depends on the header `Accept`."""
 FORMULA = r"(^|;)([=+\-@\t\r])"
 """First character of a cell that a spreadsheet would evaluate instead of showing; some split lines at semicolons."""
 

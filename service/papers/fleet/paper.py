@@ -187,7 +187,7 @@ class FleetPaper:
     total: int
     simulated: int
     counts: tuple[PaperCount, ...]
-    """Those that must not be used first, every unit once."""
+    """Every unit once, those that must not be used first."""
     chart: str
     overdue: tuple[PaperNotice, ...]
     more_overdue: int

@@ -1,4 +1,4 @@
-"""What waits for a person, by role, stands on one page with the flags."""
+"""Everything that waits for a person, by role, stands on one page with the flags."""
 
 import pytest
 

@@ -105,7 +105,7 @@ def test_a_program_passes_on_a_single_connection(full: Settings, staff: Staff) -
 
 
 def example(described: dict[str, Any], route: APIRoute, method: str) -> dict[str, Any]:
-    """What is sent to a route: the example of its body, or a form with something in every field."""
+    """The body sent to a route: the example of its body, or a form with something in every field."""
     operation = described["paths"].get(f"/api/v1{route.path}".replace(":path}", "}"), {}).get(method.lower(), {})
     schema = operation.get("requestBody", {}).get("content", {}).get("application/json", {}).get("schema", {})
     if "$ref" in schema:

@@ -54,7 +54,7 @@ def test_programs_have_it_corrected_too(client: httpx.Client) -> None:
 
 
 def corrections(storage: Storage, id: str, life: Sequence[StateChange]) -> Remedies:
-    """What would put a session right."""
+    """Corrections that would put a session right."""
     with storage.database.reading() as store:
         return remedies_of(store, storage.files, id, life)
 

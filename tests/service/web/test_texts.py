@@ -16,7 +16,7 @@ from tests.serving import http_client
 on_postgresql = pytest.mark.parametrize("databases", ["postgresql"], indirect=True)
 """The engine that refuses NUL itself."""
 NOWHERE = ("\x00", "a\x00b")
-"""What nothing can be looked for by."""
+"""Texts that nothing can be looked for by."""
 UNTYPED = (*NOWHERE, "a\x0bb", "a\x0cb", "a\x1bb", "a\x85b", "a\u2028b")
 APART = frozenset({"password", "old", "new", "secret", "next"})
 """Passwords, which are hashed; the secret of a webhook, which has a pattern of its own; where a browser goes next."""
@@ -58,7 +58,7 @@ def test_every_text_of_every_call_is_refused_under_its_name(client: httpx.Client
 
 
 def faults(answer: httpx.Response) -> dict[str, str]:
-    """What an answer says of each field."""
+    """Problems that an answer names, by field."""
     assert answer.status_code == 422, answer.text
     return {fault["field"]: fault["message"] for fault in answer.json()["problems"]}
 
