@@ -50,7 +50,7 @@ PATHS = (
 LONG_AND_ALIKE = "/api-reference"
 """A page whose folds stay closed: axe takes a minute for hundreds that are made by one loop."""
 MORE = (
-    "/?q=BA&condition=fail",
+    "/?q=BA&use=no",
     "/units/GB-004",
     "/units/RA-1",
     "/sessions/{loose}",
@@ -241,21 +241,45 @@ def test_fleet_lists_the_worst_unit_first(chromium: Browser, site: Site) -> None
         page.goto(site.url)
         first = page.locator("table.units tbody tr").first.inner_text()
         assert "FL-1" in first
-        assert "Unfit" in first
+        assert "Do not use" in first
         assert "A3 bias" in first
 
 
-def test_tile_shows_only_its_condition(chromium: Browser, site: Site) -> None:
+def test_a_count_shows_only_its_units(chromium: Browser, site: Site) -> None:
     with opened(chromium) as (_, page):
         page.goto(site.url)
-        follow(page.locator(".tile.fail"))
-        assert page.locator("table.units tbody th a:not(.tag)").all_inner_texts() == ["FL-1", "BA-017"]
+        count = int(page.locator(".tally .use.no b").inner_text())
+        follow(page.locator(".tally .use.no"))
+        shown = page.locator("table.units tbody .badge").all_inner_texts()
+        assert shown == count * ["Do not use"]
+
+
+@pytest.mark.parametrize(("width", "height"), [(1280, 900), (390, 844)])
+def test_units_are_seen_without_scrolling(chromium: Browser, site: Site, width: int, height: int) -> None:
+    with opened(chromium, width) as (_, page):
+        page.set_viewport_size({"width": width, "height": height})
+        page.goto(site.url)
+        box = page.locator("table.units tbody tr").first.bounding_box()
+        assert box is not None
+        assert box["y"] + box["height"] < height
+
+
+@pytest.mark.parametrize("width", [1280, 390])
+def test_a_unit_s_page_begins_with_its_use_and_the_worst_parameter(chromium: Browser, site: Site, width: int) -> None:
+    with opened(chromium, width) as (_, page):
+        page.goto(f"{site.url}/units/BA-017")
+        assert "Do not use" in page.locator("h1").inner_text()
+        assert "A3 bias" in page.locator(".lead-answer").inner_text()
+        box = page.locator(".lead-answer .worst .chart").bounding_box()
+        assert box is not None
+        assert box["y"] < 750
 
 
 def test_reading_needs_no_script(chromium: Browser, site: Site) -> None:
     with opened(chromium, java_script_enabled=False) as (_, page):
         page.goto(address(site, "/units/BA-017"))
-        assert "Unfit" in page.locator("h1").inner_text()
+        assert "Do not use" in page.locator("h1").inner_text()
+        page.locator("details:has(> #bias-accelerometer) > summary").click()
         follow(page.locator("#bias-accelerometer a"))
         page.locator("#bias-accelerometer .twin summary").click()
         assert "µg" in page.locator("#bias-accelerometer table tbody tr").first.inner_text()
