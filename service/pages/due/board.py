@@ -15,7 +15,7 @@ from service.pages.due.view import OVERDUE, UNKNOWN, month_after, month_begin
 from service.sessions.words.conditions import condition_of
 
 MONTHS = 12
-"""Months with a tile even where nothing is due, this one included."""
+"""Months that are counted even where nothing is due, this one included."""
 
 
 @answer
