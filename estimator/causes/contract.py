@@ -182,6 +182,8 @@ class Cause(ABC):
     """Most times that it may happen to one sensor in a session; what needs more of them is no such cause."""
     passing: ClassVar[bool] = False
     """Whether it belongs to a single session, so that no model can hold it."""
+    lasts: ClassVar[bool] = False
+    """Whether it is a property of the sensor, which a repeated session shows again."""
     moves_parameters: ClassVar[bool] = False
     """Whether it truly changes the sensor's parameters, so that it stays in the calibration."""
     turns_flipped_run: ClassVar[bool] = False

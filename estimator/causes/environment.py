@@ -32,6 +32,7 @@ def warmth(setting: Setting) -> Array:
 class BiasTemperature(SensorCause):
     identifier = "bias-temperature"
     scope = "environment"
+    lasts = True
     equation = "k·(T − T̄)"
     units = ("m/s²/K",)
     needs = frozenset({"temperature"})
@@ -51,6 +52,7 @@ class BiasTemperatureCurve(SensorCause):
 
     identifier = "bias-temperature-curve"
     scope = "environment"
+    lasts = True
     equation = "k1·(T − T̄) + k2·(T − T̄)²"
     units = ("m/s²/K", "m/s²/K²")
     needs = frozenset({"temperature"})
@@ -76,6 +78,7 @@ class BiasTemperatureCurve(SensorCause):
 class ScaleTemperature(SensorCause):
     identifier = "scale-temperature"
     scope = "environment"
+    lasts = True
     equation = "k·(T − T̄)·a"
     units = ("1/K",)
     needs = frozenset({"temperature"})
@@ -91,6 +94,7 @@ class ScaleTemperatureCurve(BiasTemperatureCurve):
     """Likewise."""
 
     identifier = "scale-temperature-curve"
+    lasts = True
     equation = "(k1·(T − T̄) + k2·(T − T̄)²)·a"
     units = ("1/K", "1/K²")
     contains = frozenset({"scale-temperature"})

@@ -9,6 +9,7 @@ from estimator.session import GYROSCOPE, Array
 class GSensitivity(SensorCause):
     identifier = "g-sensitivity"
     scope = "gyro"
+    lasts = True
     equation = "k·n (3)"
     units = ("(rad/s)/(m/s²)", "(rad/s)/(m/s²)", "(rad/s)/(m/s²)")
     needs = frozenset({"gravity"})

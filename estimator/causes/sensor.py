@@ -16,6 +16,7 @@ def across(setting: Setting, i: int) -> tuple[Array, Array]:
 
 class CubicNonlinearity(SensorCause):
     identifier = "cubic-nonlinearity"
+    lasts = True
     equation = "k·a³"
     units = ("(m/s²)⁻²",)
     sentence = "{sensors} has a cubic nonlinearity."
@@ -30,6 +31,7 @@ class CubicNonlinearity(SensorCause):
 
 class OddQuadratic(SensorCause):
     identifier = "odd-quadratic"
+    lasts = True
     equation = "k·a·|a|"
     units = ("(m/s²)⁻¹",)
     sentence = "{sensors} has a sign-dependent quadratic nonlinearity (K_oq)."
@@ -43,6 +45,7 @@ class OddQuadratic(SensorCause):
 
 class ScaleAsymmetry(SensorCause):
     identifier = "scale-asymmetry"
+    lasts = True
     equation = "k·|a|"
     units = ("1",)
     sentence = "{sensors} has a different scale factor for positive and negative input."
@@ -55,6 +58,7 @@ class ScaleAsymmetry(SensorCause):
 
 class BiasAsymmetry(SensorCause):
     identifier = "bias-asymmetry"
+    lasts = True
     equation = "k·sign(a)"
     units = ("m/s²",)
     sentence = "{sensors} has a different bias for positive and negative input (K_0′, a dead zone)."
@@ -67,6 +71,7 @@ class BiasAsymmetry(SensorCause):
 
 class CrossCoupling(SensorCause):
     identifier = "cross-coupling"
+    lasts = True
     equation = "a·(k1·(p·n) + k2·(o·n))"
     units = ("(m/s²)⁻¹", "(m/s²)⁻¹")
     sentence = (
@@ -84,6 +89,7 @@ class CrossCoupling(SensorCause):
 
 class CrossAxisQuadratic(SensorCause):
     identifier = "cross-axis-quadratic"
+    lasts = True
     equation = "k1·(p·n)² + k2·(p·n)(o·n)"
     units = ("(m/s²)⁻¹", "(m/s²)⁻¹")
     sentence = "{sensors} responds to the square of the acceleration across its axis (K_pp, K_po)."
@@ -97,6 +103,7 @@ class CrossAxisQuadratic(SensorCause):
 
 class Hysteresis(SensorCause):
     identifier = "hysteresis"
+    lasts = True
     equation = "k·sign(a_j − a_{j−1}), 0 at the first position of a run"
     units = ("m/s²",)
     sentence = "{sensors} reads differently for rising and falling input."

@@ -262,7 +262,9 @@ def _of_findings(session: Doubted) -> Iterator[Reservation]:
         size = None if of_record or not acts_within(finding.cause) else size_of_cause(finding, session.yardstick)
         if of_record or (_is_large(size) and not _is_known(finding, session.known)):
             kind, text = Doubt.RECORD if of_record else Doubt.CAUSE, named(finding, _in_words(size))
-            plain = Reservation(kind, text, advice_on(finding.cause), finding.sensors, finding.cause)
+            plain = Reservation(
+                kind, text, advice_on(finding.cause, *finding.alternatives), finding.sensors, finding.cause
+            )
             yield _sized(plain, size)
 
 
@@ -314,7 +316,8 @@ def _of_models(session: Doubted) -> Iterator[Reservation]:
         if other.verdict not in named:
             named.add(other.verdict)
             text = otherwise(other.verdict, other.causes, other.sensors, named=other.named)
-            yield Reservation(Doubt.OTHER_MODEL, text, REPEAT, other.sensors, verdict=other.verdict)
+            advice = advice_on(*other.causes) if other.named and other.causes else REPEAT
+            yield Reservation(Doubt.OTHER_MODEL, text, advice, other.sensors, verdict=other.verdict)
 
 
 def _of_structures(session: Doubted) -> Iterator[Reservation]:

@@ -35,9 +35,10 @@ STAND = "correct the stand and repeat the session"
 FIXTURE = "remount the block and repeat the session"
 RESTATE = "state the true standard errors and upload the file again"
 ADD = "add positions"
+ACCEPT = "accept it into the model, or have the sensor checked"
 REPORT = "see its diagnosis"
 ADVICE = {"record": CORRECT, "stand": STAND, "fixture": FIXTURE}
-"""Advice by the scope of a cause; for a sensor, a session is repeated first."""
+"""Advice by the scope of a cause; for a passing effect in a sensor, the session is repeated first."""
 TOO_FEW = "causes were not checked because of too few positions"
 AGAIN = "ask again in a few seconds"
 FAILED = "causes were not checked"
@@ -48,10 +49,14 @@ def advice_on_structure(structure: Structure) -> str:
     return REPEAT if structure.sensors else STAND
 
 
-def advice_on(cause: str) -> str:
-    """The advice on a named cause, in a clause."""
-    known = find(cause)
-    return REPEAT if known is None else ADVICE.get(known.scope, REPEAT)
+def advice_on(cause: str, *others: str) -> str:
+    """The advice on a named cause, in a clause; ``others``: causes that the session cannot tell from it. A property of
+    the sensor comes back in a repeated session.
+    """
+    known = [find(name) for name in (cause, *others)]
+    if all(one is not None and one.lasts for one in known):
+        return ACCEPT
+    return REPEAT if known[0] is None else ADVICE.get(known[0].scope, REPEAT)
 
 
 def named(finding: Finding, size: str) -> str:

@@ -10,6 +10,7 @@ import pytest
 from benchmarks.study.degrees_of_freedom import measured
 from estimator.writing import session_document
 from service.judging.reservations import UNCHECKED
+from service.judging.words import ACCEPT, REPEAT, advice_on
 from service.models.records import NewModel, Scope
 from service.records.changes import choose_reference
 from service.records.diagnose import diagnose
@@ -129,3 +130,10 @@ def test_large_structure_without_a_name_and_understated_errors_are_told(storage:
     assert (boasts.kind, boasts.text) == (
         Doubt.STATED_ERRORS, "the stated standard errors are about 4 times too small",
     )  # fmt: skip
+
+
+def test_a_property_of_the_sensor_is_accepted_or_repaired_and_no_session_is_repeated_for_it() -> None:
+    assert advice_on("hysteresis") == advice_on("cubic-nonlinearity", "odd-quadratic") == ACCEPT
+    assert "repeat" not in ACCEPT
+    assert advice_on("bias-jump") == advice_on("hysteresis", "bias-jump") == REPEAT
+    assert advice_on("levelling-y").startswith("correct the stand")
