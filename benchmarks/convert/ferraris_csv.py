@@ -33,7 +33,7 @@ def read(path: Path) -> pl.DataFrame:
     numbers = dict.fromkeys(("samples", *READINGS), pl.Float64)
     try:
         table = pl.read_csv(read_bytes(path), schema_overrides={"part": pl.String, **numbers})
-    except (PolarsError, UnicodeDecodeError) as fault:
+    except (PolarsError, UnicodeDecodeError, OSError) as fault:
         raise refuse(path, "file", str(fault).splitlines()[0]) from fault
     missing = [name for name in ("part", *numbers) if name not in table.columns]
     if missing:

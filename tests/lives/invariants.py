@@ -9,6 +9,7 @@ from itertools import product
 from typing import Any
 from urllib.parse import quote
 
+from service.fleet.use import WORDS, Use
 from service.kit.measures import day_of
 from tests.lives.world import API, FindError, World
 
@@ -154,23 +155,45 @@ def pages_agree(world: World, everything: bool = False) -> None:
 
 
 def unit_agrees(world: World, serial: str) -> None:
-    """Verdict and due date of a unit: on its page, in the list, in its outlook, and where it is said to be usable."""
+    """Use and due date of a unit: on its page, in the lists, in its outlook, and where it is said to be usable."""
     path = f"/units/{quote(serial, safe='')}"
     before = world.get(path)
     text, outlook, usable = page(world, path), world.get(f"{path}/outlook"), world.get(f"{path}/usable")
     after = world.get(path)
     if before != after:
         return  # the workers were faster than the reader
-    said = before["summary"]["said"]
-    _same(heading(text), said, f"{path}: heading and verdict")
+    if usable["use"] != before["summary"]["use"]:
+        return
+    _same(heading(text), WORDS[Use(usable["answer"])], f"{path}: heading and use")
+    listed_by_use(world, serial, usable)
     due = before["summary"]["due"]
     if not usable_is_pending(usable):
         _same(str(due), str(outlook["due"]), f"{path}: due in the list and in the outlook")
         _same(str(usable["next_calibration"])[:10], str(due)[:10], f"{path}: due and next_calibration")
-    if due and outlook["due"] == due and not outlook["overdue"]:
+    if due and usable["usable"] and outlook["due"] == due:
         shown = day_of(_date(due))
         if shown not in plain(text):
             raise FindError(f"{path}: due {due} is not on the page")
+
+
+def listed_by_use(world: World, serial: str, usable: dict[str, Any]) -> None:
+    """A unit of the fleet is in the list of its answer and in no other; not while something is being worked out."""
+    if usable["answer"] == Use.PENDING or any("ask again" in one for one in usable["reservations"]):
+        return
+    if not _is_listed(world, serial):
+        return
+    for use in (Use.YES, Use.RESERVED, Use.NO):
+        is_listed = _is_listed(world, serial, use=use.value)
+        if (
+            is_listed is not (usable["answer"] == use)
+            and world.get(f"/units/{quote(serial, safe='')}/usable") == usable
+        ):
+            raise FindError(f"/units?use={use}: {serial} is {'there' if is_listed else 'missing'}, {usable['use']!r}")
+
+
+def _is_listed(world: World, serial: str, **wanted: str) -> bool:
+    found = world.get("/units", params={"text": serial, "limit": 1000, **wanted})["units"]
+    return any(unit["serial"] == serial for unit in found)
 
 
 def usable_is_pending(usable: dict[str, Any]) -> bool:
