@@ -21,6 +21,11 @@ REASON = {
     "postgresql": "split_part({0}, chr(31), 1)",
 }
 """A sentence without its parts."""
+WORDS = {
+    "sqlite": {"true": "1", "false": "0", "tomorrow": "datetime('now', '+1 day')"},
+    "postgresql": {"true": "true", "false": "false", "tomorrow": "CURRENT_TIMESTAMP + INTERVAL '1 day'"},
+}
+"""Terms that each engine writes in its own way."""
 UNITS = """
 CREATE {or_replace}VIEW health_units AS
 SELECT u.serial AS unit, t.name AS unit_type, u.lot AS lot, u.simulated AS simulated,
@@ -42,9 +47,11 @@ LEFT JOIN outlooks o ON o.unit_id = u.id
 LEFT JOIN work p ON p.kind = 'outlook' AND p.key = u.serial{join}
 """
 MORE = """,
-    COALESCE(x.answer IN ('yes', 'with-reservation') AND COALESCE(o.due >= CURRENT_TIMESTAMP, {true}), {false})
-        AS usable,
-    CASE WHEN x.answer IN ('yes', 'with-reservation') AND o.due < CURRENT_TIMESTAMP THEN 'Do not use: calibrate it'
+    COALESCE(x.answer IN ('yes', 'with-reservation') AND COALESCE(o.due >= CURRENT_TIMESTAMP, {true})
+        AND s.started_at <= {tomorrow}, {false}) AS usable,
+    CASE WHEN x.answer NOT IN ('yes', 'with-reservation') THEN x."use"
+        WHEN s.started_at > {tomorrow} THEN 'Do not use: put the date of its session right'
+        WHEN o.due < CURRENT_TIMESTAMP THEN 'Do not use: calibrate it'
         ELSE COALESCE(x."use", 'Do not use yet') END AS "use"
 """
 JOIN = """
@@ -64,8 +71,7 @@ def upgrade() -> None:
         sa.ForeignKeyConstraint(["unit_id"], ["units.id"], name="fk_uses_unit_id"),
     )
     op.create_index("ix_uses_answer", "uses", ["answer"])
-    literals = {"sqlite": ("1", "0"), "postgresql": ("true", "false")}[op.get_context().dialect.name]
-    _view(MORE.format(true=literals[0], false=literals[1]), JOIN, replaces=True)
+    _view(MORE.format(**WORDS[op.get_context().dialect.name]), JOIN, replaces=True)
 
 
 def downgrade() -> None:

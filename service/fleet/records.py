@@ -55,8 +55,6 @@ class FleetQuery(ListQuery):
     lot: str | None = None
     flagged: bool = False
     """Only units with an open flag."""
-    reference: bool | None = None
-    """Whether the latest session is a reference; None where either will do."""
     location: str | None = None
     custodian: str | None = None
     uncalibrated: bool = False

@@ -1,6 +1,5 @@
 """All units at a glance: one short row a unit, rewritten when a session of it is stored."""
 
-from collections import Counter
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
@@ -28,7 +27,6 @@ from service.flags.tables import FlagRow
 from service.fleet.condition import FleetCondition, UnitKnown, UnitSummary
 from service.fleet.records import UNCALIBRATED, FleetChoices, FleetQuery, Tally
 from service.fleet.tables import ConditionRow, FleetTallyRow, UseRow
-from service.fleet.use import Use
 from service.fleet.wanted_store import UNITS
 from service.kit.moments import local
 from service.models.records import Scope
@@ -204,24 +202,6 @@ class Fleet(Queries):
         due = overdue_count(now).scalar_subquery()
         rows = self._session.execute(_tallies().add_columns(OPEN_OF_GROUPS, due)).all()
         return replace(_condition([row[:-1] for row in rows]), overdue=rows[0][-1] if rows else 0)
-
-    def uses_at(self, now: datetime) -> dict[str, Counter[Use]]:
-        """Number of units of each type, retired ones apart, that have each answer at a time."""
-        counted = (
-            select(UnitTypeRow.name, UseRow.answer, func.count())
-            .join(UnitRow, UnitRow.unit_type_id == UnitTypeRow.id)
-            .join(UseRow, UseRow.unit_id == UnitRow.id)
-            .where(UseRow.is_listed)
-            .group_by(UnitTypeRow.name, UseRow.answer)
-        )
-        found: dict[str, Counter[Use]] = {}
-        for unit_type, answer, count in self._session.execute(counted):
-            found.setdefault(unit_type, Counter())[Use(answer)] += count
-        overdue = counted.join(OutlookRow, OutlookRow.unit_id == UnitRow.id).where(OutlookRow.due < now)
-        for unit_type, answer, count in self._session.execute(overdue):
-            found[unit_type][Use(answer)] -= count
-            found[unit_type][Use.NO] += count
-        return found
 
     def tallies(self) -> tuple[Tally, ...]:
         """Units with an accepted session, by their verdict and by how much of their tolerance they use."""

@@ -1,6 +1,7 @@
 """Permitted use of a unit: the four answers, worded the same everywhere."""
 
 from collections.abc import Iterator, Mapping
+from datetime import timedelta
 from enum import StrEnum
 
 from estimator.message import say
@@ -17,6 +18,8 @@ class Use(StrEnum):
     """Its verdict or its dates are being worked out; until then the unit may not be used."""
 
 
+SLACK = timedelta(days=1)
+"""Time by which a session may be dated ahead: a clock may be in another zone than it says."""
 RANKS = {Use.NO: 0, Use.PENDING: 1, Use.RESERVED: 2, Use.YES: 3}
 """Places in the order of attention."""
 WORDS = {

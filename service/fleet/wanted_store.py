@@ -1,11 +1,13 @@
 """Conditions and orders of lists of units, and the announcements above the list on the fleet page."""
 
+from datetime import datetime
+
 from sqlalchemy import ColumnElement, String, Subquery, case, cast, false, func, literal, select
 
 from service.diagnosis.tables import DiagnosisRow
 from service.fleet.records import Announced, FleetQuery, Order, UseAt
 from service.fleet.tables import ConditionRow, UseRow
-from service.fleet.use import Use
+from service.fleet.use import SLACK, Use
 from service.groups.records import FoundTogether, Group, Level
 from service.groups.tables import GroupDiagnosisRow
 from service.outlook.tables import OutlookRow
@@ -25,11 +27,15 @@ from service.units.tables import UnitRow
 BY_SERIAL = Key(UnitRow.serial, stays=True)
 
 
+def forbids(now: datetime) -> ColumnElement[bool]:
+    """Whether the clock forbids the use, whatever is stored: the calibration is overdue, or dated in the future."""
+    return func.coalesce((OutlookRow.due < now) | (ConditionRow.last_at > now + SLACK), false())
+
+
 def _has_use(wanted: UseAt) -> ColumnElement[bool]:
-    is_overdue = func.coalesce(OutlookRow.due < wanted.at, false())
     if wanted.use is Use.NO:
-        return (UseRow.answer == Use.NO) | is_overdue
-    return (UseRow.answer == wanted.use) & ~is_overdue
+        return (UseRow.answer == Use.NO) | forbids(wanted.at)
+    return (UseRow.answer == wanted.use) & ~forbids(wanted.at)
 
 
 WORST_FIRST = (
@@ -70,7 +76,6 @@ UNITS: Listing[FleetQuery] = Listing(
         "use": _has_use,
         "verdict": lambda verdict: ConditionRow.severity == verdict.severity,
         "reserved": _is_reserved,
-        "reference": lambda is_so: SessionRow.is_reference.is_(is_so),
         "unfit": _is_unfit,
         "flagged": lambda _: ConditionRow.flags > 0,
         "undated": lambda _: OutlookRow.due.is_(None),

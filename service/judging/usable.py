@@ -6,11 +6,11 @@ It rests on the unit's latest accepted session. The cases are tabled in `docs/ap
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from datetime import datetime, timedelta
+from datetime import datetime
 
 from estimator.message import joined, say
 from service.flags.records import Matter
-from service.fleet.use import Use, in_words
+from service.fleet.use import SLACK, Use, in_words
 from service.judging import usable_words as words
 from service.judging.fault_words import remedy_in
 from service.judging.records import Usable, UseFacts
@@ -30,8 +30,6 @@ WHOLE_TOLERANCE = 1.0
 """Share of a tolerance from which on an effect that the verdict leaves out forbids the use."""
 MOST_NAMED = 4
 """Parameters, by name, before the rest are counted."""
-SLACK = timedelta(days=1)
-"""A clock may be in another zone than it says."""
 
 
 @dataclass(frozen=True)

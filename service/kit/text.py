@@ -13,7 +13,7 @@ NUL = r"\x00"
 OF_LINES = r"\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u2028\u2029"
 """Control characters but tabs and ends of lines, and the separators of lines and paragraphs."""
 OF_A_LINE = r"\x00-\x1f\x7f-\x9f\u2028\u2029"
-"""Those, tabs and ends of lines."""
+"""All control characters, tabs and ends of lines included, and the separators of lines and paragraphs."""
 _SURROGATES = r"\ud800-\udfff"
 """Halves of pairs, which no encoding can hold."""
 

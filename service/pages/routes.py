@@ -1,6 +1,5 @@
 """The addresses of the pages: each route reads or asks a flow, and renders a frozen context."""
 
-from collections import Counter
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Request
@@ -12,7 +11,7 @@ from service.errors import NotFoundError
 from service.flags.store import FlagQuery, Flags
 from service.fleet.condition import UnitSummary
 from service.fleet.store import Fleet
-from service.fleet.use import Use
+from service.fleet.uses_store import Uses
 from service.fleet.wanted_store import Announcements
 from service.groups.records import Level
 from service.groups.sections import MOST_FOUND, found_line, group_section
@@ -85,7 +84,7 @@ def show_fleet(request: Request, store: ReadingFleet, now: Now, view: Annotated[
         units,
         usable_of(store, units, now),
         view,
-        used=sum(Fleet(store).uses_at(now).values(), Counter[Use]()),
+        used=Uses(store).at(now),
         overdue=condition.overdue,
         together=found_line(announced),
         unlike=fleet_standouts(store, MOST_STANDOUTS),

@@ -65,7 +65,7 @@ class Typed:
     """A rule for a text: characters that it must not contain, and whether it says anything."""
 
     refused: str
-    """As inside the brackets of a regular expression."""
+    """Characters that the text must not contain, as inside the brackets of a regular expression."""
     is_required: bool = False
     """Whether it must have more than spaces."""
 

@@ -96,9 +96,7 @@ def _environment(language: Language) -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.globals.update(
-        asset=asset_url, conditions=CONDITIONS, explained=(*CONDITIONS, REFERENCE, RESERVED), reserved=RESERVED
-    )
+    environment.globals.update(asset=asset_url, explained=(*CONDITIONS, REFERENCE, RESERVED))
     environment.globals.update(
         may=_may, your_name=_your_name, csrf_field=_csrf_field, csrf_query=_csrf_query, say=say, counted=counted
     )

@@ -96,7 +96,7 @@ def test_the_last_term_of_20_is_not_q14() -> None:
 
 
 def test_24_lacks_the_scale_under_q11() -> None:
-    """Where c is known to be zero, q11 is K·b: print gives K·b for b."""
+    """q11 is K·b where c is known to be zero: print gives K·b for b."""
     u, flipped = readings(E, c=0.0)
     q11 = float(((u + flipped) / 2).mean())
     assert q11 / K == pytest.approx(B, rel=1e-9)

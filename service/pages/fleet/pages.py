@@ -56,7 +56,6 @@ class FleetRow:
     margin: Margin | None
     last_at: datetime | None
     last_session: str | None
-    sessions: int
     simulated: bool
     due: datetime | None
     """Date of the next calibration; None where something else must be done first."""

@@ -19,6 +19,7 @@ from service.fleet.condition import UnitSummary
 from service.fleet.records import FleetQuery
 from service.fleet.store import Fleet
 from service.fleet.use import Use
+from service.fleet.uses_store import Uses
 from service.groups.records import Level
 from service.groups.sections import GroupSection, group_section
 from service.judging.records import Usable
@@ -89,7 +90,7 @@ class TypeReport:
 
 def every_type(store: Store, now: datetime) -> tuple[TypeLine, ...]:
     """All types, by name."""
-    units, uses = UnitTypes(store).uses(), Fleet(store).uses_at(now)
+    units, uses = UnitTypes(store).uses(), Uses(store).by_type_at(now)
     known = UnitTypes(store).page(0, MOST_TYPES)
     return tuple(TypeLine(one, units[one.name].units, uses.get(one.name, {})) for one in known)
 
@@ -99,7 +100,7 @@ def type_report(store: Store, name: str, now: datetime) -> TypeReport:
     unit_type = UnitTypes(store).get(name)
     revisions, units = UnitTypes(store).revisions(name), Fleet(store).units(FleetQuery(unit_type=name, limit=MOST + 1))
     return TypeReport(
-        line=TypeLine(unit_type, UnitTypes(store).uses(name)[name].units, Fleet(store).uses_at(now).get(name, {})),
+        line=TypeLine(unit_type, UnitTypes(store).uses(name)[name].units, Uses(store).by_type_at(now).get(name, {})),
         kinds=UnitTypes(store).kinds(name),
         revisions=revisions,
         setters=Audit(store).who_did("tolerances", name, [revision.since for revision in revisions]),

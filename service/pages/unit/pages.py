@@ -7,6 +7,7 @@ from itertools import groupby
 from estimator.message import capitalised, say
 from service.flags.pages import FlagCard, flag_cards
 from service.flags.records import Flag
+from service.fleet.condition import UnitSummary
 from service.fleet.use import WORDS
 from service.groups.sections import GroupSection
 from service.judging.covered import CoveredTemperatures
@@ -17,7 +18,7 @@ from service.kit.failure import unit_failed
 from service.kit.measures import NOISE, PARAMETER_NAMES, day_of, in_measure, number
 from service.outlook.charts import ParameterCourse, TrackPoint, history_charts, tracks_of
 from service.outlook.records import UnitOutlook
-from service.outlook.words import NextCalibration, next_calibration
+from service.outlook.words import NextCalibration, changes_of, next_calibration
 from service.pages.unit.events import KINDS, STEPS, StageTable, UnitEvent, events_of, stage_table
 from service.pages.unit.parameters import ParameterHead, parameter_heads
 from service.pages.unit.remarks import Remarks
@@ -210,7 +211,7 @@ def unit_page(
         usable=usable,
         word=WORDS[usable.answer],
         action=capitalised(usable.action) or next_in_words(usable),
-        why=tuple(_why(usable, report, coming)),
+        why=tuple(_why(usable, report.summary, outlook)),
         measured=_measured(report),
         due=next_in_words(usable) if usable.action and usable.due else "",
         worst=_course(worst, services, outlook),
@@ -235,13 +236,12 @@ def unit_page(
     )
 
 
-def _why(usable: Usable, report: UnitReport, coming: NextCalibration | None) -> Iterator[str]:
-    """The reason, and of what moves the sentence about the parameter that it names."""
+def _why(usable: Usable, unit: UnitSummary, outlook: UnitOutlook | None) -> Iterator[str]:
+    """The reason, and where the unit must not be used how the parameter came there that the verdict rests on."""
     yield usable.objection or usable.why
-    unit = report.summary
-    name = f"{unit.worst_sensor} {PARAMETER_NAMES.get(unit.worst_parameter or '', '')}"
-    if not usable.usable and coming is not None:
-        yield from (sentence for sentence in coming.moving if sentence.startswith(f"{name} "))
+    for trend in () if usable.usable or outlook is None else outlook.trends:
+        if (trend.sensor, trend.parameter) == (unit.worst_sensor, unit.worst_parameter):
+            yield from changes_of(trend)
 
 
 def _measured(report: UnitReport) -> str:

@@ -1,6 +1,5 @@
 """The whole fleet for a report: its stored counts, and its units as they are requested."""
 
-from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
@@ -9,6 +8,7 @@ from service.fleet.condition import FleetCondition
 from service.fleet.records import Tally
 from service.fleet.store import Fleet
 from service.fleet.use import Use
+from service.fleet.uses_store import Uses
 from service.outlook.store import Outlooks
 from service.settings import VERSION
 from service.storage.queries import Store
@@ -39,7 +39,7 @@ def fleet_report(store: Store, now: datetime) -> FleetReport:
         at=now,
         condition=FleetCondition.of(tallies),
         tallies=tallies,
-        uses=sum(Fleet(store).uses_at(now).values(), Counter[Use]()),
+        uses=Uses(store).at(now),
         overdue=Outlooks(store).overdue(now),
         software=VERSION,
     )

@@ -61,7 +61,7 @@ def lines_of(connection: Connection, table: Table) -> Iterator[bytes]:
 NUL, INSTEAD = "\x00", "\ufffd"
 """The character that SQLite holds and PostgreSQL refuses, and what is stored in its place."""
 NUL_WRITTEN = rb"\u0000"
-"""As JSON has it."""
+"""NUL as JSON writes it."""
 
 
 def put_lines(connection: Connection, table: Table, columns: tuple[str, ...], lines: Iterator[bytes]) -> Counter[str]:

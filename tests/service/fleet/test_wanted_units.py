@@ -1,12 +1,16 @@
 """Units that a list holds, and their order."""
 
+from collections import Counter
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from service.fleet.records import FleetChoices, FleetQuery, Order
+from service.fleet.records import FleetChoices, FleetQuery, Order, UseAt
 from service.fleet.store import Fleet
+from service.fleet.use import Use
+from service.fleet.uses_store import Uses
+from service.judging.usable_reading import usable_of
 from service.records.unit_changes import set_lot
 from service.storage import Storage
 from tests.conftest import Filled
@@ -83,3 +87,15 @@ def test_a_list_read_on_from_unit_to_unit_is_the_whole_list(fleet: Storage, orde
     assert read == whole
     assert listed(fleet, replace(wanted, before=names[whole[-1]], limit=1)) == whole[-2]
     assert listed(fleet, replace(wanted, after=names[whole[-1]])) == ""
+
+
+def test_the_clock_forbids_what_is_stored_as_usable(fleet: Storage) -> None:
+    """A-1 falls due in February 2027; before its session of February 2026 that one is dated in the future."""
+    for now in (datetime(2026, 1, 15, tzinfo=UTC), NOW, datetime(2027, 6, 1, tzinfo=UTC)):
+        with fleet.database.reading() as store:
+            units = Fleet(store).units(ALL)
+            answered = Counter(use.answer for use in usable_of(store, units, now).values())
+            assert +Uses(store).at(now) == answered
+            for use in Use:
+                found = Fleet(store).units(replace(ALL, use=UseAt(use, now)))
+                assert len(found) == answered[use]

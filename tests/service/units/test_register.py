@@ -16,6 +16,7 @@ from service.errors import ConflictError, RefusedError
 from service.flags.store import FlagQuery, Flags
 from service.fleet.records import FleetQuery, Order
 from service.fleet.store import Fleet
+from service.fleet.uses_store import Uses
 from service.judging.usable_reading import usable_unit
 from service.outlook.store import Outlooks
 from service.records import register
@@ -66,7 +67,7 @@ def test_a_registered_unit_is_in_the_fleet_without_a_calibration(storage: Storag
         )
         condition = Fleet(store).condition_at(NOW)
         assert (condition.units, condition.uncalibrated, sum(condition.verdicts.values())) == (2, 1, 1)
-        assert sum(sum(counts.values()) for counts in Fleet(store).uses_at(NOW).values()) == 2
+        assert sum(sum(counts.values()) for counts in Uses(store).by_type_at(NOW).values()) == 2
         assert not usable_unit(store, "BA-900", NOW).usable
         assert Fleet(store).choices().custodians == ("M. Sato",)
 
