@@ -73,7 +73,7 @@ def once(function: Callable[[Owner, *Rest], Result]) -> Callable[[Owner, *Rest],
 
 
 class OfSession(Hashable, Protocol):
-    """A result worked out of a session; it never changes, and is told from others by identity."""
+    """A result worked out of a session; it never changes, and is distinguished from others by identity."""
 
     @property
     def session(self) -> CalibrationSession: ...

@@ -43,7 +43,7 @@ class Sample:
     dated: int = 50
     """Types with stated dates: of a date only those that pass a tolerance tell."""
     compared: int = 1000
-    """Histories of every kind beside the optimum: two parts in a hundred are told from chance."""
+    """Histories of every kind beside the optimum: two parts in a hundred are distinguished from chance."""
 
     @property
     def smaller(self) -> "Sample":

@@ -11,7 +11,7 @@ from benchmarks.study.report import mean, of_kind, table
 from tests.blind.score import Outcome, score
 
 SILENT: dict[str, Any] = {"findings": [], "unexplained": False}
-"""Stands for the answer to a session that has none."""
+"""Placeholder of the answer to a session that has none."""
 NAMED = "one effect, separated from every rival: cause named"
 NEAR = "one effect, near a rival: named, or listed where it is not sure"
 WRONG = "one effect: a wrong name without the right one beside it"

@@ -89,7 +89,7 @@ class CommonMotion:
     sensors: tuple[str, ...]
     """Names of the sensors that the common change rests on."""
     left_out: tuple[str, ...]
-    """Names of the sensors that moved on their own, or cannot be told from one that did; the most evident first."""
+    """Sensors that moved on their own, or cannot be distinguished from one that did; the most evident first."""
 
     @property
     def size(self) -> float:

@@ -42,7 +42,7 @@ SAME = 1e-6
 TRIED = 12
 """Stands, the most evident, whose best candidate is given a fit of its own."""
 MOST_EVENTS = 24
-"""Most events of a fleet that are told apart; more are no single events."""
+"""Most events of a fleet that are distinguished; more are no single events."""
 BUCKETS = 2.0
 """Units whose numbers of sessions are within this factor are worked on together."""
 

@@ -187,7 +187,7 @@ class ParityEvidence:
         return float(np.linalg.svd(combined[0].whitened, compute_uv=False)[0])
 
     def rivals(self, h: ParityHypothesis, false_alarm: float) -> Rivals:
-        """The hypotheses that a change of the kind of ``h`` must be told from."""
+        """The hypotheses that a change of the kind of ``h`` must be distinguished from."""
         bases = np.zeros((len(self.all), len(self.seen), 4))
         for basis, tried in zip(bases, self.all, strict=True):
             basis[:, : tried.basis.shape[1]] = tried.basis

@@ -83,7 +83,7 @@ class ParityChange:
 
     @property
     def complete(self) -> bool:
-        """Whether bias and scale can be told apart: all four of (1, n) are excited."""
+        """Whether bias and scale can be distinguished: all four of (1, n) are excited."""
         return self.excited.shape[1] == 4
 
     def signature(self, sensor: int, rows: Array) -> Array:

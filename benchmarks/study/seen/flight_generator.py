@@ -17,7 +17,7 @@ from scipy.spatial.transform import Rotation
 Array = NDArray[np.float64]
 G = 9.81
 APART = np.radians(15.0)
-"""Least angle between any two sensors as they lie in parity: nearer ones are hardly told apart by anything."""
+"""Least angle between any two sensors as they lie in parity: nothing distinguishes nearer ones."""
 MEDIAN = 0.455
 """Median of the square of a standard normal number."""
 LEAST_SEEN = 0.15

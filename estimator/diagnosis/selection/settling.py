@@ -91,7 +91,7 @@ class Settling:
         return replace(fitted, session=whole, residual=fitted.residual + effect, course=effect), earlier
 
     def holds_in(self, setting: Setting) -> bool:
-        """Whether it tells how far another session had settled."""
+        """Whether it shows how far another session had settled."""
         return self.cause.since_power_on and setting.switched_on is not None and self.cause.available(setting)
 
     def left_free(self, session: Baseline) -> Baseline:

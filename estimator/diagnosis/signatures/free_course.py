@@ -26,7 +26,7 @@ SIZES = 4.0 ** np.arange(1, 9, 2)
 """g: mean square sizes that are tried, the likeliest of which is taken."""
 
 TURNS = 12
-"""Most alternations between the two regressions; two courses that can be told apart separate by a factor each time."""
+"""Most alternations between the two regressions; two courses that differ separate by a factor each time."""
 
 MOST = 30.0
 """ln n at most: beyond it no course is believed, and n would no longer be a number."""

@@ -76,7 +76,7 @@ def amplitude_measure(cause: str, si_unit: str, largest: float) -> Measure:
 AT_ROWS = {"from": "from row {value}", "at": "at row {value}"}
 """Phrases for a cause that has its row."""
 NUMBERED = re.compile(r" \d+$")
-"""End of a name that tells two nonlinear parameters of one unit apart: ``row 1``, ``row 2``."""
+"""End of a name that distinguishes two nonlinear parameters of one unit: ``row 1``, ``row 2``."""
 
 
 FINE = 0.01

@@ -168,7 +168,7 @@ MATTERS = (Matter.TOLERANCE, Matter.CAUSE, Matter.UNEXPLAINED)
 units.
 """
 ANY = "*"
-"""Stands for every place."""
+"""Placeholder of every place."""
 
 
 @dataclass(frozen=True)

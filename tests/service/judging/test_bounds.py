@@ -1,4 +1,4 @@
-"""A change beyond any gravity, stand or sensor is the unit's or a slip: the unit is never fit, and told why."""
+"""A change beyond any gravity, stand or sensor is the unit's or a slip: the unit is never fit, for a reason given."""
 
 import json
 
