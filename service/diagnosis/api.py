@@ -43,8 +43,8 @@ def read_diagnosis(id: SessionId, reader: ReaderOf) -> Response | DiagnosisDocum
 def accept_cause(
     id: SessionId, new: NewModelSchema, reception: ReceptionOf, reader: ReaderOf, now: Now
 ) -> ModelDocument:
-    """Accept a named cause: from the next session on it is part of the model of the unit, unit type or stand; with
-    `again` of the stored sessions too, which are computed again: `GET /models/{id}` follows it."""
+    """Accept a named cause: it is part of the model of the unit, unit type or stand. Flags that it explains are
+    resolved, and the stored sessions are computed again: `GET /models/{id}` follows it."""
     accepted = accept_model(reception.storage, reader.made(id), NewModel(**new.model_dump()), now)
     recompute_beside(reception, now)
     return model_document(accepted)

@@ -31,7 +31,7 @@ from service.diagnosis.words.gain import gain_in_words
 from service.models.records import ModelRevision, NewModel, Scope
 from service.models.rules import in_force
 from service.models.store import Models
-from service.people.dependencies import SEE_OTHER, By, FormLines, FormText, Key, StorageOf, Why
+from service.people.dependencies import SEE_OTHER, By, FormLines, FormText, Key, Why
 from service.records.dependencies import ReceptionOf
 from service.records.models import accept_model, withdraw_model
 from service.records.recalibrate import recompute_beside
@@ -257,10 +257,9 @@ def accept(
     scope: Annotated[Scope, Form()],
     by: By,
     note: FormLines = "",
-    again: Annotated[bool, Form()] = False,
 ) -> RedirectResponse:
-    """Accepts a named cause, and shows its gain and, where stored sessions are computed again, the results."""
-    made = accept_model(reception.storage, reader.made(id), NewModel(cause, scope, by, note, again=again), now)
+    """Accepts a named cause, and shows its gain and the results for the stored sessions."""
+    made = accept_model(reception.storage, reader.made(id), NewModel(cause, scope, by, note), now)
     recompute_beside(reception, now)
     return RedirectResponse(f"/models/{made.id}", SEE_OTHER)
 
@@ -269,12 +268,13 @@ def accept(
 def withdraw(
     id: Key,
     revision: Annotated[int, Path(ge=1, le=2**31 - 1)],
-    storage: StorageOf,
+    reception: ReceptionOf,
     now: Now,
     *,
     by: By,
     why: Why,
 ) -> RedirectResponse:
     """Takes an accepted cause out of the model again, and shows the models that concern the session."""
-    withdraw_model(storage, revision, by, why, now)
+    withdraw_model(reception.storage, revision, by, why, now)
+    recompute_beside(reception, now)
     return RedirectResponse(f"/sessions/{id}/diagnosis#models", SEE_OTHER)

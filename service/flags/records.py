@@ -86,6 +86,10 @@ class Concern:
     """Whether it is about the unit, or about its whole type or a stand, which the unit only showed last."""
     subject: str = ""
     """Name of the type or the stand."""
+    causes: tuple[str, ...] = ()
+    """Causes by which a diagnosis explains it, each equally possible; empty for any other concern."""
+    sensors: tuple[tuple[str, str], ...] = ()
+    """Names and kinds of the sensors on which they act; empty for a cause of the stand."""
 
     @property
     def key(self) -> tuple[str, str]:

@@ -240,7 +240,8 @@ class Flags(Queries):
     def add(self, unit: int, concern: Concern, session: str | None, at: datetime) -> int:
         """Stores a raised flag and returns its number."""
         raised = {"state": FlagState.RAISED, "proposal": "", "raised_at": at, "changed_at": at}
-        row = FlagRow(unit_id=unit, session_id=session, **vars(concern), **raised)
+        kept = ("matter", "place", "severity", "summary", "scope", "subject")
+        row = FlagRow(unit_id=unit, session_id=session, **{name: getattr(concern, name) for name in kept}, **raised)
         self._session.add(row)
         self._session.flush()
         return row.id

@@ -90,14 +90,14 @@ class SessionEvidence:
     """Evidence of an accepted session for flags."""
 
     at: Moment
+    unit: str
+    """Serial number of the unit."""
     verdict: FlagEvidence | None
     """Evidence of its verdict; None where that was not stored."""
     diagnosis: FlagEvidence | None
     """Evidence of its diagnosis; None where there is none. If the session could not decide, it clears nothing."""
     is_old: bool = False
     """Whether it was judged by a release that did not keep its evidence."""
-    unit: str = ""
-    """Serial number, where the evidence is of several units."""
     block: str = ""
     """Kind of block, where the evidence is of several units."""
 

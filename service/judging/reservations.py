@@ -306,7 +306,9 @@ def _is_large(size: Size | None) -> bool:
 
 
 def _is_known(finding: Finding, known: Known) -> bool:
-    return all((finding.cause, sensor) in known for sensor in finding.sensors or ("",))
+    """Whether the model in force holds the cause, or one that is equally possible, wherever it acts."""
+    possible = (finding.cause, *finding.alternatives)
+    return all(any((name, place) in known for name in possible) for place in finding.sensors or ("",))
 
 
 def _of_models(session: Doubted) -> Iterator[Reservation]:

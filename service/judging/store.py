@@ -180,15 +180,19 @@ class Derivations(Queries):
     def evidence(self, unit: int) -> tuple[SessionEvidence, ...]:
         """The evidence of every accepted session of a unit, in order of time."""
         return tuple(
-            SessionEvidence((at, id), _evidence(verdict), _diagnosis_evidence(diagnosis, is_undecided), basis is None)
-            for at, id, verdict, diagnosis, is_undecided, basis in self._session.execute(_EVIDENCE, {"unit": unit})
+            SessionEvidence(
+                (at, id), serial, _evidence(verdict), _diagnosis_evidence(diagnosis, is_undecided), basis is None
+            )
+            for at, id, serial, verdict, diagnosis, is_undecided, basis in self._session.execute(
+                _EVIDENCE, {"unit": unit}
+            )
         )
 
     def evidence_on_stand(self, stand: str) -> tuple[SessionEvidence, ...]:
         """The evidence of the diagnoses of the newest accepted sessions on a stand, oldest first."""
         found = self._session.execute(_EVIDENCE_OF_STAND, {"stand": stand}).all()
         return tuple(
-            SessionEvidence((at, id), None, _diagnosis_evidence(diagnosis, is_undecided), unit=unit, block=block)
+            SessionEvidence((at, id), unit, None, _diagnosis_evidence(diagnosis, is_undecided), block=block)
             for at, id, diagnosis, is_undecided, unit, block in reversed(found)
         )
 
@@ -247,11 +251,15 @@ MOST_OF_STAND = 500
 """The newest sessions that count for a stand: of months where it is used every hour."""
 _IS_UNDECIDED = (SessionRow.verdict == Verdict.UNDECIDABLE) & ~SessionRow.is_reference
 _EVIDENCE = (
-    select(SessionRow.started_at, SessionRow.id, SessionRow.tells, DiagnosisRow.tells, _IS_UNDECIDED, SessionRow.basis)
+    select(
+        SessionRow.started_at, SessionRow.id, UnitRow.serial, SessionRow.tells, DiagnosisRow.tells, _IS_UNDECIDED,
+        SessionRow.basis,
+    )
+    .join(UnitRow, UnitRow.id == SessionRow.unit_id)
     .outerjoin(DiagnosisRow, DiagnosisRow.session_id == SessionRow.id)
     .where(SessionRow.unit_id == bindparam("unit"), IS_ACCEPTED)
     .order_by(SessionRow.started_at, SessionRow.id)
-)
+)  # fmt: skip
 _EVIDENCE_OF_STAND = (
     select(SessionRow.started_at, SessionRow.id, DiagnosisRow.tells, _IS_UNDECIDED, UnitRow.serial, SessionRow.block)
     .join(DiagnosisRow, DiagnosisRow.session_id == SessionRow.id)
@@ -298,7 +306,10 @@ def _motion_rows(decided: Decided) -> Iterator[dict[str, Any]]:
 
 def evidence_to_dict(evidence: FlagEvidence) -> dict[str, list[list[Any]]]:
     """The evidence as it is stored."""
-    concerns = [[c.matter.value, c.place, c.severity, c.summary] for c in evidence.concerns]
+    concerns = [
+        [c.matter.value, c.place, c.severity, c.summary, *([c.causes, c.sensors] if c.causes else [])]
+        for c in evidence.concerns
+    ]
     document: dict[str, list[list[Any]]] = STORED.written({"concerns": concerns, "clear": evidence.clear})
     return document
 
@@ -313,8 +324,12 @@ def _evidence(document: dict[str, list[list[Any]]] | None) -> FlagEvidence | Non
     if document is None:
         return None
     concerns = tuple(
-        Concern(Matter(str(matter)), str(place), int(severity), with_messages(summary))
-        for matter, place, severity, summary in document["concerns"]
+        Concern(Matter(str(matter)), str(place), int(severity), with_messages(summary), **_explained(*explained))
+        for matter, place, severity, summary, *explained in document["concerns"]
     )
     clear = tuple((str(matter), str(place), with_messages(why)) for matter, place, why in document["clear"])
     return FlagEvidence(concerns, clear)
+
+
+def _explained(causes: Sequence[str] = (), sensors: Sequence[Sequence[str]] = ()) -> dict[str, Any]:
+    return {"causes": tuple(causes), "sensors": tuple((name, kind) for name, kind in sensors)}

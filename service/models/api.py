@@ -96,7 +96,6 @@ class NewModelSchema(
     scope: AnyScope = Field(description="Whose model: the unit's, that of all units of its type, or the stand's.")
     by: Name = Field(description="Who accepts it.")
     note: LongText = Field(default="", description="Why.")
-    again: bool = Field(default=False, description="Whether the stored sessions that it concerns are computed again.")
 
 
 @answer
@@ -116,7 +115,7 @@ class ModelAndRecomputations(ModelDocument):
     """A revision with its effects."""
 
     recomputations: tuple[Recomputation, ...]
-    """Units whose sessions are computed again because of it, for a finding of a group."""
+    """Units whose sessions are computed again because of it."""
 
 
 def model_document(revision: ModelRevision) -> ModelDocument:
@@ -139,8 +138,8 @@ router = APIRouter(prefix="/models", tags=["models"])
 
 @router.post("/{id}/withdraw", status_code=201, responses=errors(400, 404, 409, 422))
 def withdraw_cause(id: Number, handling: Handling, reception: ReceptionOf, now: Now, person: PersonOf) -> ModelDocument:
-    """Take an accepted cause out of the model: a revision of its own; sessions from now on are calibrated without. A
-    finding of a group is taken out of the stored sessions too.
+    """Take an accepted cause out of the model: a revision of its own; sessions are calibrated without, the stored ones
+    anew.
     """
     withdrawal = withdraw_model(reception.storage, id, person.signs(handling.by), handling.why, now)
     recompute_beside(reception, now)

@@ -31,8 +31,6 @@ class NewModel:
     scope: Scope
     by: str
     note: str
-    again: bool = False
-    """Whether the stored sessions that it concerns are computed again."""
 
 
 @dataclass(frozen=True)

@@ -215,11 +215,14 @@ class Recomputations(Queries):
         self._session.execute(statement.values(state=Progress.CANCELLED, done_at=now))
 
     def settle(self, task: Task, outcome: Recomputed, now: datetime) -> bool:
-        """Stores the result of a unit, once; whether that was now."""
+        """Stores the result of a unit, once, also where nobody asked for it; whether that was now."""
         document = {
             **asdict(outcome),
             "verdicts": [asdict(v) | {"started_at": v.started_at.isoformat()} for v in outcome.verdicts],
         }
+        unit = self._session.scalar(select(UnitRow.id).where(UnitRow.serial == task.unit))
+        row = {"revision": task.revision, "unit_id": unit, "state": Progress.WAITING}
+        self.insert_all_once(RecomputationRow, [row])
         statement = update(RecomputationRow).where(*_of(task), RecomputationRow.state == Progress.WAITING)
         stored = statement.values(state=Progress.DONE, done_at=now, outcome=document).returning(
             RecomputationRow.unit_id

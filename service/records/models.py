@@ -3,7 +3,8 @@
 The size of a group's finding is the group's: no session fits it again. The model that it becomes part of was found with
 it.
 
-A withdrawn finding of a group is taken out of every session that it concerned.
+An accepted cause enters the stored sessions that it concerns, and a withdrawn one is taken out of them: they are
+computed again in the background.
 """
 
 from dataclasses import replace
@@ -27,8 +28,10 @@ from service.groups.words import equation_of
 from service.jobs.changes import add_model_job
 from service.kit.copying import copied
 from service.models.records import SCOPES, AcceptedFinding, ModelRevision, NewLasting, NewModel, Pooled, Scope
-from service.models.rules import in_force, pooled_of
+from service.models.rules import in_force
 from service.models.store import Models, Recomputations
+from service.records.flagging.acts import Occasion
+from service.records.flagging.fold import settle_sessions
 from service.records.flagging.lasting import settle_accepted
 from service.records.refresh_group import current, members_of
 from service.sessions.records import DiagnosisState, StoredSession
@@ -37,11 +40,15 @@ from service.storage import Storage
 from service.storage.audit import Audit
 from service.storage.queries import Store
 from service.types.store import UnitTypes
+from service.units.store import Units
 
 
 def accept_model(storage: Storage, diagnosis: StoredDiagnosis, new: NewModel, now: datetime) -> ModelRevision:
-    """Adds a numbered revision with its evidence; RefusedError where the session does not show the cause, ConflictError
-    where it could not be diagnosed."""
+    """Adds a numbered revision with its evidence, resolves the flags that the cause explains, and asks for every
+    session that it concerns to be computed again.
+
+    RefusedError where the session does not show the cause, ConflictError where it could not be diagnosed.
+    """
     if diagnosis.state is DiagnosisState.FAILED:
         raise ConflictError(diagnosis.summary)
     if diagnosis.found is None:
@@ -64,8 +71,8 @@ def accept_model(storage: Storage, diagnosis: StoredDiagnosis, new: NewModel, no
         )
         revision = Models(store).add(accepted)
         tell_own(store, revision.scope, revision.subject)
-        if new.again:
-            _compute_again(store, revision, now)
+        _compute_again(store, revision, now)
+        settle_sessions(store, Occasion(Units(store).hold(session.unit), session.id, now))
         details = {"cause": new.cause, "sensors": list(finding.sensors), "session": session.id, "note": new.note}
         Audit(store).write(
             now,
@@ -290,8 +297,7 @@ def withdraw_model(storage: Storage, revision: int, by: str, why: str, now: date
             replace(known, evidence=None, accepted_by=by, note=why, accepted_at=now, withdraws=known.id)
         )
         tell_own(store, known.scope, known.subject)
-        if pooled_of(known) is not None:
-            _compute_again(store, made, now)
+        _compute_again(store, made, now)
         details = {"revision": made.id, "withdraws": known.id, "cause": known.cause, "why": why}
         Audit(store).write(
             now, by, "withdraw model", say("{scope} {subject}", scope=known.scope, subject=known.subject), details

@@ -112,6 +112,8 @@ def recalibrate(
         after = {session.id: session for session in Sessions(store).of_unit(serial)}
         _write_down(store, context, [(before[r.session.id], after[r.session.id]) for r in put], who)
         done = _report(serial, stored, outcomes, tuple(moved_verdicts(before, tuple(after.values()))))
+        if put:
+            _credit(store, Task(done.revision, serial), done, now)
         record(store, done)
     if derived is not None:
         follow(storage, context, serial, derived)
@@ -247,12 +249,22 @@ def recompute(storage: Storage, task: Task, now: datetime, coverage_factor: floa
     revision.
     """
 
-    def settle(store: Store, done: Recalibrated) -> None:
-        outcome = Recomputed(done.sessions, done.recomputed, done.left, done.verdicts, done.furthest)
-        if Recomputations(store).settle(task, outcome, now):
-            left = JobFailure(task.unit, left_in_words(done.left)) if done.left else None
-            Jobs(store).count_unit(task.revision, RecalibrationPiece(done.recomputed, len(done.verdicts), left), now)
-
     with storage.database.reading() as store:
         who = Models(store).get(task.revision).accepted_by
-    recalibrate(storage, task.unit, now, coverage_factor=coverage_factor, who=who, until=task.revision, record=settle)
+    recalibrate(
+        storage,
+        task.unit,
+        now,
+        coverage_factor=coverage_factor,
+        who=who,
+        until=task.revision,
+        record=lambda store, done: _credit(store, task, done, now),
+    )
+
+
+def _credit(store: Store, task: Task, done: Recalibrated, now: datetime) -> None:
+    """Records a unit's result with the revision that brought it, once, whoever asked for the recomputation."""
+    outcome = Recomputed(done.sessions, done.recomputed, done.left, done.verdicts, done.furthest)
+    if Recomputations(store).settle(task, outcome, now):
+        left = JobFailure(task.unit, left_in_words(done.left)) if done.left else None
+        Jobs(store).count_unit(task.revision, RecalibrationPiece(done.recomputed, len(done.verdicts), left), now)

@@ -10,6 +10,8 @@ from service.storage.queries import Store
 
 SERVICE = "imu-health"
 """Name under which the service raises flags."""
+COVERED = "Another flag covers it."
+"""Reason for resolving a flag whose matter another one says too."""
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from service.judging.store import Derivations
 from service.kit.measures import YEAR
 from service.outlook.records import FoundChange, ParameterTrend, UnitOutlook
 from service.outlook.words import change_in_words
-from service.records.flagging.acts import SERVICE, Occasion, raise_flag, resolve_as_done, see_again
+from service.records.flagging.acts import COVERED, SERVICE, Occasion, raise_flag, resolve_as_done, see_again
 from service.sessions.decision import Verdict
 from service.sessions.store import Sessions
 from service.storage.queries import Store
@@ -29,7 +29,6 @@ FAILS = (Verdict.FAIL, Verdict.CONDITIONAL_FAIL)
 NOT_SHOWN = "The history of the unit's accepted sessions no longer shows it."
 SMALL = "The change is too small for a flag; it is listed on the unit's page."
 OUT = "The sensor is out of tolerance."
-WORSE = "Another flag covers it."
 LATE = "The flag on the overdue calibration covers it."
 Found = tuple[ParameterTrend, FoundChange]
 
@@ -45,7 +44,7 @@ def flag_drift(store: Store, occasion: Occasion, outlook: UnitOutlook | None) ->
     wanted = {concern.key: concern for concern in concerns if concern.place not in covered}
     sensors = {sensor for _, sensor in wanted}
     for key in sorted(opened.keys() - wanted.keys()):
-        why = covered.get(key[1]) or (WORSE if key[1] in sensors else SMALL if key[1] in found else NOT_SHOWN)
+        why = covered.get(key[1]) or (COVERED if key[1] in sensors else SMALL if key[1] in found else NOT_SHOWN)
         resolve_as_done(store, occasion, opened[key], why)
     for key, concern in wanted.items():
         if key in opened:

@@ -25,10 +25,8 @@ from service.judging.records import FlagEvidence, Key, Moment, SessionEvidence
 from service.judging.store import Derivations
 from service.judging.words import reason, verdict_in_words
 from service.kit.measures import day_of
-from service.models.records import ModelRevision
-from service.models.rules import in_force, places_of
-from service.models.store import Models
-from service.records.flagging.acts import SERVICE, Occasion, resolve_as_done, see_again, tell
+from service.records.flagging.accepted import AcceptedCauses, accepted_in_words
+from service.records.flagging.acts import COVERED, SERVICE, Occasion, resolve_as_done, see_again, tell
 from service.records.flagging.stands import NOT_SHOWN, OF_STAND, settle_stand
 from service.sessions.decision import Decision, Judged, Verdict, worst_of
 from service.sessions.records import StoredSession
@@ -111,8 +109,7 @@ def flag_diagnosis(store: Store, made: StoredDiagnosis, at: datetime) -> None:
     if made.found is None or session.programme not in CALIBRATIONS:
         return
     unit = Units(store).hold(session.unit)
-    accepted = in_force(Models(store).of_session(session.id))
-    concerns = tuple(_concerns(made.found, session, accepted))
+    concerns = tuple(_concerns(made.found, session))
     clear = () if made.found.calibration.fit.is_exact else tuple(_clear(session))
     Derivations(store).keep_evidence(session.id, FlagEvidence(concerns, clear))
     settle_sessions(store, Occasion(unit, session.id, at))
@@ -127,23 +124,17 @@ def _clear(session: StoredSession) -> Iterator[tuple[str, str, str]]:
         yield Matter.STAND.value, session.stand, gone
 
 
-def _concerns(found: Diagnosed, session: StoredSession, accepted: tuple[ModelRevision, ...]) -> Iterator[Concern]:
-    """One a matter and place; what an engineer accepted into the model is known and raises nothing."""
-    sensors = found.calibration.sensors
-    known = {(revision.cause, place) for revision in accepted for place in places_of(revision, sensors)}
-    by_key: dict[tuple[str, str], list[Concern]] = {}
+def _concerns(found: Diagnosed, session: StoredSession) -> Iterator[Concern]:
+    """Concerns of every finding, with the causes that explain each."""
+    kinds = {sensor.name: sensor.kind for sensor in found.calibration.sensors}
     for finding in found.findings:
-        for concern in _of_finding(finding, found.findings, session, known):
-            by_key.setdefault(concern.key, []).append(concern)
-    for first, *others in by_key.values():
-        said = dict.fromkeys((first.summary, *(concern.summary for concern in others)))
-        yield replace(first, summary=joined(" ", said))
+        yield from _of_finding(finding, found.findings, session, kinds)
     if found.structures:
         yield Concern(Matter.UNEXPLAINED, "", 1, summed_up(found.structures))
 
 
 def _of_finding(
-    finding: Finding, findings: tuple[Finding, ...], session: StoredSession, known: set[tuple[str, str]]
+    finding: Finding, findings: tuple[Finding, ...], session: StoredSession, kinds: dict[str, str]
 ) -> Iterator[Concern]:
     """The concerns of a finding. Where several causes are equally possible, all known ones must act on the sensor, or
     all on the stand.
@@ -153,14 +144,16 @@ def _of_finding(
     """
     if finding.over_sessions is not None:
         return
-    name, statement = finding.cause, what_is_wrong(finding, findings)
-    possible = [cause(identifier) for identifier in (name, *finding.alternatives) if identifier != UNKNOWN_CAUSE]
+    statement = what_is_wrong(finding, findings)
+    possible = [cause(name) for name in (finding.cause, *finding.alternatives) if name != UNKNOWN_CAUSE]
+    causes = tuple(c.identifier for c in possible)
     if all(c.is_of_sensor for c in possible):
-        new = [sensor for sensor in finding.sensors if (name, sensor) not in known]
-        for place in new if finding.shared is None else [""] * bool(new):
-            yield Concern(Matter.CAUSE, place, 1, statement)
-    elif all(c.scope == "stand" for c in possible) and session.stand is not None and (name, "") not in known:
-        yield Concern(Matter.STAND, session.stand, 1, statement)
+        acts_on = tuple((sensor, kinds[sensor]) for sensor in finding.sensors)
+        places = {sensor: ((sensor, kind),) for sensor, kind in acts_on} if finding.shared is None else {"": acts_on}
+        for place, sensors in places.items():
+            yield Concern(Matter.CAUSE, place, 1, statement, causes=causes, sensors=sensors)
+    elif all(c.scope == "stand" for c in possible) and session.stand is not None:
+        yield Concern(Matter.STAND, session.stand, 1, statement, causes=causes)
 
 
 MATTERS = (Matter.TOLERANCE, Matter.CAUSE, Matter.UNEXPLAINED)
@@ -196,19 +189,47 @@ def settle_sessions(store: Store, occasion: Occasion) -> None:
     """Brings the flags that sessions raise in line with the unit's accepted sessions."""
     sessions = Derivations(store).evidence(occasion.unit)
     opened = {f.key: f for f in Flags(store).open_of(occasion.unit) if f.matter in (*MATTERS, Matter.STAND)}
-    lives = _lives(sessions, tuple(opened.values()))
+    lives = _lives(sessions, tuple(opened.values()), AcceptedCauses(store, sessions))
     settled = Derivations(store).settled(occasion.unit, SERVICE) if lives.opened else {}
-    wanted = {key: life for key, life in lives.opened.items() if key not in settled or settled[key] < life.at}
+    wanted, covered = _one_a_sensor(_unsettled(lives.opened, settled))
     for key, life in wanted.items():
         _bring(store, occasion, opened.get(key), life)
     for key, flag in opened.items():
         if key not in wanted:
-            why = OF_STAND if flag.matter is Matter.STAND else lives.closed.get(key, NOT_SHOWN)
+            gone = COVERED if key in covered else lives.closed.get(key, NOT_SHOWN)
+            why = OF_STAND if flag.matter is Matter.STAND else gone
             resolve_as_done(store, occasion, flag, why)
     if wanted.keys() - opened.keys():
         Fleet(store).count_flags(occasion.unit)
     for stand in sorted({*_faulty_stands(sessions), *Flags(store).open_stands_of(occasion.unit)}):
         settle_stand(store, occasion, stand)
+
+
+def _unsettled(opened: dict[Key, Opened], settled: dict[Key, Moment]) -> dict[Key, Opened]:
+    """The matters that a later session showed than those known when a person resolved them."""
+    known = {key: max((settled[k] for k in _flags_of(key) & settled.keys()), default=None) for key in opened}
+    return {key: life for key, life in opened.items() if (at := known[key]) is None or at < life.at}
+
+
+def _flags_of(key: Key) -> set[Key]:
+    """Flags that say a matter: a cause is also said by the flag of a sensor out of tolerance."""
+    matter, place = key
+    return {key, (Matter.TOLERANCE.value, place)} if matter == Matter.CAUSE else {key}
+
+
+def _one_a_sensor(wanted: dict[Key, Opened]) -> tuple[dict[Key, Opened], set[Key]]:
+    """One flag a sensor: what is out of tolerance, with its cause; and the matters that another flag covers."""
+    out = {place: life for (matter, place), life in wanted.items() if matter == Matter.TOLERANCE}
+    causes = {place: life for (matter, place), life in wanted.items() if matter == Matter.CAUSE and place in out}
+    covered = {(Matter.CAUSE.value, place) for place in causes}
+    merged = {(Matter.TOLERANCE.value, place): _with_cause(out[place], life) for place, life in causes.items()}
+    return {key: life for key, life in (wanted | merged).items() if key not in covered}, covered
+
+
+def _with_cause(out: Opened, cause: Opened) -> Opened:
+    latest = max(out, cause, key=lambda life: life.at)
+    said = joined(" ", (out.concern.summary, cause.concern.summary))
+    return replace(out, concern=replace(out.concern, summary=said), session=latest.session, at=latest.at)
 
 
 def _faulty_stands(sessions: Iterable[SessionEvidence]) -> Iterator[str]:
@@ -219,31 +240,49 @@ def _faulty_stands(sessions: Iterable[SessionEvidence]) -> Iterator[str]:
                 yield concern.place
 
 
-def _lives(sessions: Iterable[SessionEvidence], opened: Iterable[Flag]) -> Lives:
+def _lives(sessions: Iterable[SessionEvidence], opened: Iterable[Flag], accepted: AcceptedCauses) -> Lives:
     """The open and the closed matters after a unit's sessions, one after another."""
     lives = Lives({}, {})
     for session in sessions:
         kept = tuple(_concern(flag) for flag in opened if flag.session == session.at[1]) if session.is_old else ()
         for evidence in (session.verdict, session.diagnosis, FlagEvidence(kept, ())):
             if evidence is not None:
-                lives = _after(lives, evidence, session.at)
+                lives = _after(lives, _unexplained(evidence, session.unit, accepted), session.at)
     return lives
+
+
+def _unexplained(evidence: FlagEvidence, unit: str, accepted: AcceptedCauses) -> FlagEvidence:
+    """The evidence without the concerns that an accepted cause explains: it clears them."""
+    known = [(concern, accepted.explain(unit, concern)) for concern in evidence.concerns]
+    left = tuple(concern for concern, revision in known if revision is None)
+    cleared = ((*concern.key, accepted_in_words(revision)) for concern, revision in known if revision is not None)
+    return FlagEvidence(left, (*evidence.clear, *cleared))
 
 
 def _after(lives: Lives, evidence: FlagEvidence, at: Moment) -> Lives:
     """The matters after one more session. A sensor out of tolerance is left to a person, who states why it is back; a
     finding of a diagnosis is closed by one that no longer has it.
     """
-    shown = {c.key: Opened(c, at[1], at) for c in evidence.concerns if c.matter in MATTERS}
+    shown = {concern.key: Opened(concern, at[1], at) for concern in _merged(evidence.concerns)}
     clear = {(matter, place): why for matter, place, why in evidence.clear}
     gone = {key: why for key in lives.opened if (why := clear.get(key) or clear.get((key[0], ANY)))}
-    closed = {key: why for key, why in gone.items() if key[0] != Matter.TOLERANCE}
+    closed = {key: why for key, why in (clear | gone).items() if key[0] != Matter.TOLERANCE}
     left = {
         key: replace(life, proposal=life.proposal or gone.get(key, ""))
         for key, life in lives.opened.items()
         if key not in closed
     }
     return Lives(left | shown, {key: why for key, why in (lives.closed | closed).items() if key not in shown})
+
+
+def _merged(concerns: Iterable[Concern]) -> Iterator[Concern]:
+    """One a matter and place, which says all of it."""
+    by_key: dict[Key, list[Concern]] = {}
+    for concern in concerns:
+        if concern.matter in MATTERS:
+            by_key.setdefault(concern.key, []).append(concern)
+    for first, *others in by_key.values():
+        yield replace(first, summary=joined(" ", dict.fromkeys((first.summary, *(c.summary for c in others)))))
 
 
 def _concern(flag: Flag) -> Concern:

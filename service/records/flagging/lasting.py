@@ -10,7 +10,6 @@ from dataclasses import replace
 from datetime import datetime
 
 from estimator.groups import GroupFinding
-from estimator.message import say
 from service.flags.records import Concern, Flag, FlagState, Matter, NoticeKind
 from service.flags.store import FlagQuery, Flags
 from service.groups.records import Group, Level, Member
@@ -20,7 +19,8 @@ from service.models.rules import in_force
 from service.models.store import Models
 from service.outlook.records import UnitOutlook
 from service.outlook.words import NOTHING_DUE, calibrated, was_due
-from service.records.flagging.acts import SERVICE, Occasion, raise_flag, resolve_as_done, see_again
+from service.records.flagging.accepted import accepted_in_words
+from service.records.flagging.acts import COVERED, SERVICE, Occasion, raise_flag, resolve_as_done, see_again
 from service.sessions.records import StoredSession
 from service.storage.queries import Store
 from service.units.store import Units
@@ -57,10 +57,8 @@ def overdue_by(outlook: UnitOutlook | None, now: datetime) -> Concern | None:
 
 
 NO_LONGER_SHOWN = "The sessions together no longer show it."
-COVERED = "Another flag covers it."
 OF_SENSORS = (Matter.TOLERANCE, Matter.CAUSE, Matter.JUMP, Matter.DRIFT)
 """Matters of flags whose place is a sensor."""
-ACCEPTED = "Accepted into the model of {whose}, revision {revision}."
 
 
 def flag_lasting(
@@ -125,10 +123,7 @@ def settle_accepted(store: Store, revision: ModelRevision, finding: GroupFinding
 
 
 def _resolve(store: Store, occasion: Occasion, flag: Flag, revision: ModelRevision) -> None:
-    why = say(
-        ACCEPTED, whose=say("{scope} {subject}", scope=revision.scope, subject=revision.subject), revision=revision.id
-    )
-    resolve_as_done(store, occasion, flag, why)
+    resolve_as_done(store, occasion, flag, accepted_in_words(revision))
 
 
 def _revision(accepted: Iterable[ModelRevision], finding: GroupFinding) -> ModelRevision | None:

@@ -18,6 +18,7 @@ from service.judging.records import Moment, SessionEvidence
 from service.judging.store import Derivations
 from service.kit.guard import Alone, plainly
 from service.models.records import Scope
+from service.records.flagging.accepted import AcceptedCauses, accepted_in_words
 from service.records.flagging.acts import SERVICE, Occasion, raise_flag, resolve_as_done, see_again
 from service.stands.health import stand_health
 from service.stands.records import StandCondition
@@ -46,7 +47,8 @@ class _Fault:
 def settle_stand(store: Store, occasion: Occasion, stand: str) -> None:
     """Brings the flag on a stand in line with the findings of all accepted sessions on it."""
     Stands(store).hold(stand)
-    found, why = _fault(Derivations(store).evidence_on_stand(stand), stand)
+    sessions = Derivations(store).evidence_on_stand(stand)
+    found, why = _fault(sessions, stand, AcceptedCauses(store, sessions))
     opened = _open(store, Matter.STAND, stand)
     settled = None if found is None else Derivations(store).settled_of_stand(stand, SERVICE)
     if found is None or (settled is not None and settled >= found.at):
@@ -56,18 +58,22 @@ def settle_stand(store: Store, occasion: Occasion, stand: str) -> None:
     _bring(store, replace(occasion, session=found.at[1]), opened, _of_stand(found.concern, stand, found.units))
 
 
-def _fault(sessions: Iterable[SessionEvidence], stand: str) -> tuple[_Fault | None, str]:
+def _fault(sessions: Iterable[SessionEvidence], stand: str, accepted: AcceptedCauses) -> tuple[_Fault | None, str]:
     """The open fault of a stand, or else the reason why none is open."""
     by_block: dict[str, _Fault] = {}
     why = NOT_SHOWN
     for session in sessions:
         if session.diagnosis is None:
             continue
-        shown = next((c for c in session.diagnosis.concerns if c.key == (Matter.STAND, stand)), None)
-        if shown is not None:
-            known = by_block.get(session.block)
-            units = (*(() if known is None else known.units), session.unit)
-            by_block[session.block] = _Fault(shown, session.at, tuple(dict.fromkeys(units)))
+        found = [concern for concern in session.diagnosis.concerns if concern.key == (Matter.STAND, stand)]
+        known = [accepted.explain(session.unit, concern) for concern in found]
+        new = [concern for concern, revision in zip(found, known, strict=True) if revision is None]
+        if new:
+            before = by_block.get(session.block)
+            units = (*(() if before is None else before.units), session.unit)
+            by_block[session.block] = _Fault(new[0], session.at, tuple(dict.fromkeys(units)))
+        elif found:
+            why = next(accepted_in_words(revision) for revision in known if revision is not None)
         else:
             gone = next((w for m, p, w in session.diagnosis.clear if (m, p) == (Matter.STAND, stand)), None)
             why = gone if gone and by_block.pop(session.block, None) else why

@@ -8,6 +8,7 @@ import httpx
 import pytest
 from sqlalchemy import text as sql
 
+from estimator.json_object import Json
 from service.app import create_app
 from service.diagnosis.store import Diagnoses
 from service.storage import Storage
@@ -97,27 +98,43 @@ def test_an_accepted_cause_is_listed_and_the_unit_recomputed(holding: Holding) -
     accepted = client.post(f"/sessions/{id}/diagnosis/accept", data=ACCEPT, headers=HTML, follow_redirects=True)
     assert "K. Ito" in accepted.text
     assert "Held-out error of A5" in accepted.text
-    assert "when they are computed again" in accepted.text
-    assert "calibrated before it" in page(client, id)
-    unit = client.get(f"/api/v1/sessions/{id}").json()["unit"]
-    again = {"scope": "unit", "subject": unit, "by": "K. Ito"}
-    assert client.post("/jobs/recalibration", data=again, headers=HTML).status_code == 303
+    assert "Sessions computed again" in accepted.text
     assert "calibrated with it" in page(client, id)
 
 
-def test_a_program_has_them_computed_again_too(holding: Holding) -> None:
+def test_a_program_accepts_it_alike(holding: Holding) -> None:
     client, id = held(holding, TEMPERATURE)
-    made = client.post(f"/api/v1/sessions/{id}/diagnosis/accept", json=ACCEPT | {"again": True}).raise_for_status()
+    made = client.post(f"/api/v1/sessions/{id}/diagnosis/accept", json=ACCEPT).raise_for_status()
     [unit] = client.get(f"/api/v1/models/{made.json()['id']}").json()["recomputations"]
     assert (unit["state"], unit["outcome"]["recomputed"] > 0) == ("done", True)
 
 
-def test_stored_sessions_are_computed_again_as_a_cause_is_accepted(holding: Holding) -> None:
+def flags_of(client: httpx.Client, id: str) -> list[Json]:
+    """Flags of the unit of a session, on causes."""
+    unit = client.get(f"/api/v1/sessions/{id}").json()["unit"]
+    flags: list[Json] = client.get(f"/api/v1/units/{unit}/flags").json()["flags"]
+    return [flag for flag in flags if flag["matter"] == "cause"]
+
+
+def test_accepting_a_cause_resolves_its_flag_and_withdrawing_it_raises_another(holding: Holding) -> None:
     client, id = held(holding, TEMPERATURE)
-    form = ACCEPT | {"again": "yes"}
-    accepted = client.post(f"/sessions/{id}/diagnosis/accept", data=form, headers=HTML, follow_redirects=True)
-    assert "Sessions computed again" in accepted.text
-    assert "calibrated with it" in page(client, id)
+    assert [flag["state"] for flag in flags_of(client, id)] == ["raised"]
+    made = client.post(f"/api/v1/sessions/{id}/diagnosis/accept", json=ACCEPT).raise_for_status().json()
+    [flag] = flags_of(client, id)
+    assert flag["state"] == "resolved"
+    assert flag["changes"][-1]["text"] == f"Accepted into the model of unit {made['subject']}, revision {made['id']}."
+    client.post(f"/api/v1/models/{made['id']}/withdraw", json={"by": "K. Ito", "why": "a mistake"}).raise_for_status()
+    assert [flag["state"] for flag in flags_of(client, id)] == ["raised", "resolved"]
+
+
+def test_accepting_an_equally_possible_cause_resolves_the_flag_too(holding: Holding) -> None:
+    client, id = held(holding, ALIASES)
+    found = client.get(f"/api/v1/sessions/{id}/diagnosis").json()["findings"][0]
+    wanted = ACCEPT | {"cause": found["alternatives"][0]}
+    client.post(f"/api/v1/sessions/{id}/diagnosis/accept", json=wanted).raise_for_status()
+    assert [flag["state"] for flag in flags_of(client, id)] == ["resolved"]
+    kinds = {one["kind"] for one in client.get(f"/api/v1/sessions/{id}").json()["reservations"]}
+    assert "cause" not in kinds
 
 
 def test_the_gain_is_told_in_one_number(holding: Holding) -> None:

@@ -16,8 +16,8 @@ from service.groups.sections import found_line
 from service.groups.store import Groups, read_group
 from service.models.records import NewLasting, Scope
 from service.records.changes import withdraw_session
-from service.records.flagging.acts import Occasion, raise_flag
-from service.records.flagging.lasting import COVERED, flag_lasting
+from service.records.flagging.acts import COVERED, Occasion, raise_flag
+from service.records.flagging.lasting import flag_lasting
 from service.records.models import accept_lasting, withdraw_model
 from service.records.refresh_group import current, members_of, refresh_group
 from service.settings import Settings

@@ -2,13 +2,15 @@
 
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
+from typing import Any
 
 import pytest
 from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
-from sqlalchemy import inspect, text
+from sqlalchemy import inspect, select, text
 from sqlalchemy.exc import DatabaseError
 
+from service.diagnosis.tables import DiagnosisRow
 from service.errors import AwayError
 from service.flags.records import Delivery
 from service.flags.webhooks_store import Webhooks
@@ -20,6 +22,7 @@ from service.models.store import Models, Recomputations
 from service.opening import open_database
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
+from service.records.diagnose import diagnose
 from service.records.register import Entering, enter, move_unit
 from service.sessions.store import Sessions
 from service.storage import Storage
@@ -32,6 +35,7 @@ from service.units.records import CustodyStep, Move, NewEntry
 from service.units.store import Units
 from service.uploads.receive import upload
 from tests.databases import Databases
+from tests.service.diagnosed import TEMPERATURE, drawn, files_of
 from tests.service.made_sessions import FAILED, session_bytes
 from tests.service.work.test_given_up import accepted
 
@@ -194,3 +198,23 @@ def test_before_the_register_registered_units_go_and_retired_ones_are_in_use(sto
         assert Units(store).every() == ("BA-017",)
         assert Fleet(store).condition().units == 1
     again.database.close()
+
+
+def test_an_earlier_diagnosis_is_given_the_causes_that_explain_its_flags(store_url: str, storage: Storage) -> None:
+    content = files_of(drawn(TEMPERATURE))[-1]
+    now = datetime(2026, 11, 21, tzinfo=UTC)
+    diagnose(storage, upload(storage, content, "a.json", now).id, now)
+    storage.database.close()
+    engine = open_engine(store_url)
+
+    def told() -> Any:
+        with engine.connect() as connection:
+            return connection.scalars(select(DiagnosisRow.tells)).one()
+
+    since = told()
+    assert any(len(concern) > len(("matter", "place", "severity", "summary")) for concern in since["concerns"])
+    downgrade(store_url, "0043")
+    assert {len(concern) for concern in told()["concerns"]} == {4}
+    upgrade(store_url)
+    assert told() == since
+    engine.dispose()
