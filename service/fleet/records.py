@@ -53,8 +53,8 @@ class FleetQuery(ListQuery):
     stand: str | None = None
     """Stand of the latest session."""
     lot: str | None = None
-    flagged: bool = False
-    """Only units with an open flag."""
+    flagged: bool | None = None
+    """Whether the unit has an open flag; None where either will do."""
     location: str | None = None
     custodian: str | None = None
     uncalibrated: bool = False

@@ -77,7 +77,7 @@ UNITS: Listing[FleetQuery] = Listing(
         "verdict": lambda verdict: ConditionRow.severity == verdict.severity,
         "reserved": _is_reserved,
         "unfit": _is_unfit,
-        "flagged": lambda _: ConditionRow.flags > 0,
+        "flagged": lambda flagged: ConditionRow.flags > 0 if flagged else ConditionRow.flags == 0,
         "undated": lambda _: OutlookRow.due.is_(None),
         "due_before": lambda due: OutlookRow.due < due,
         "due_since": lambda due: OutlookRow.due >= due,

@@ -127,5 +127,5 @@ def said_of(faults: tuple[ServiceFault, ...]) -> str:
 
 
 def remedy_in(reason: str) -> str:
-    """The remedy in a reason made by `said_of`; empty for any other reason."""
+    """The remedy in the reason of a verdict; empty where it states none."""
     return reason.parts.get("remedy", "") if isinstance(reason, Message) else ""

@@ -21,7 +21,7 @@ from service.outlook.words import UNFIT
 from service.sessions.decision import Verdict
 from service.sessions.doubt import DoubtKind as Doubt
 from service.sessions.doubt import Reservation
-from service.sessions.words.conditions import MOST_TOLD, advice_of, condition_of
+from service.sessions.words.conditions import advice_of, condition_of
 
 FORBIDDING = (Matter.TOLERANCE,)
 """Flags that forbid the use until they are resolved, acknowledged or not: others are reservations. That a calibration
@@ -121,7 +121,7 @@ def _unfit(facts: UseFacts, _: datetime) -> Iterator[Objection]:
     if unit.verdict in UNFIT:
         yield Objection(unit.reason, remedy_in(unit.reason) or words.ADJUST)
     elif unit.verdict is Verdict.UNDECIDABLE:
-        yield Objection(unit.reason, words.REPEAT)
+        yield Objection(unit.reason, remedy_in(unit.reason) or words.REPEAT)
 
 
 def _uncertain(facts: UseFacts, _: datetime) -> Iterator[Objection]:
@@ -144,9 +144,9 @@ def _gravely_reserved(facts: UseFacts, _: datetime) -> Iterator[Objection]:
 
 
 def _said_with(facts: UseFacts, *, forbidding: bool) -> Iterator[Objection]:
-    """The verdict's reservations, each with the action that the verdict itself ends with."""
+    """The verdict's reservations, with the one action that the verdict itself ends with."""
     every = facts.unit.reservations or ()
-    action = joined(" and ", advice_of(every[:MOST_TOLD]))
+    action = advice_of(every)
     for reservation in every:
         if forbids(reservation) is forbidding:
             yield Objection(words.reserved(reservation), action)

@@ -179,26 +179,33 @@ def _sentence(worst: Decision, decisions: tuple[Decision, ...]) -> str:
     return _too_uncertain(worst, **parts)
 
 
+MORE_READINGS = "measure more positions or average longer"
+MEASURE_AGAIN = "measure again"
+OTHER_REFERENCE = "choose a reference that has it"
+ADD_POSITIONS = "add positions"
+
+
 def _too_uncertain(worst: Decision, *, change: str, **known: str) -> str:
     """``known``: its place, U and tolerance."""
     step = worst.temperature_correction
     if step is not None and worst.expanded is not None and worst.expanded > worst.tolerance:
         return say(
-            "{place} has U {spread} at {reference}, more than its tolerance of ±{tolerance}: {again}.",
+            "{place} has U {spread} at {reference}, more than its tolerance of ±{tolerance}: {remedy}.",
             **known,
             reference=in_degrees(step.reference_temperature),
-            again=at_about(step.reference_temperature),
+            remedy=at_about(step.reference_temperature),
         )
     if worst.expanded is not None and worst.expanded > worst.tolerance:
         return say(
-            "{place} has U {spread}, more than its tolerance of ±{tolerance}: measure more positions, average longer, "
-            "or set a wider tolerance.",
+            "{place} has U {spread}, more than its tolerance of ±{tolerance}: {remedy}, or set a wider tolerance.",
             **known,
+            remedy=MORE_READINGS,
         )
     return say(
         "{place} changed by {change} (U {spread}), beyond the tolerance of ±{tolerance}, but noise alone can do this "
-        "to one of so many parameters: measure again.",
+        "to one of so many parameters: {remedy}.",
         **known,
+        remedy=MEASURE_AGAIN,
         change=change,
     )
 
@@ -208,10 +215,11 @@ def _unseen(worst: Decision, decisions: tuple[Decision, ...]) -> str:
     named = joined(", ", sensors[:6]) + (
         say(" and {sensors} more", sensors=len(sensors) - 6) if len(sensors) > 6 else ""
     )
-    missing = "cannot be compared: the reference session does not have it"
+    missing, remedy = "is not in the reference session", OTHER_REFERENCE
     if worst.value is None:
-        missing = "is not observable in this session: add positions"
-    return say("{worst} of {named} {missing}.", worst=capitalised(_name(worst)), named=named, missing=missing)
+        missing, remedy = "is not observable in this session", ADD_POSITIONS
+    parts = {"worst": capitalised(_name(worst)), "named": named, "missing": missing, "remedy": remedy}
+    return say("{worst} of {named} {missing}: {remedy}.", **parts)
 
 
 def _name(decision: Decision) -> str:

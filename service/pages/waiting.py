@@ -3,10 +3,15 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import datetime
+from urllib.parse import quote
 
 from estimator.message import joined, say
 from estimator.wording import counted
+from service.fleet.records import FleetQuery, UseAt
+from service.fleet.store import Fleet
+from service.fleet.use import Use
 from service.jobs.store import Failures
+from service.judging.usable_reading import usable_of
 from service.kit.failure import NAMES
 from service.kit.measures import day_of
 from service.kit.person import Person, Role
@@ -18,9 +23,8 @@ from service.sessions.states import RecordState
 from service.sessions.store import Sessions
 from service.storage.queries import Store
 
-MOST = 15
+MOST = 100
 """Entries of each kind; the page of the kind has all."""
-
 
 TO_REVIEW, TO_APPROVE = "Certificate {number} is to be reviewed.", "Certificate {number} is to be approved."
 
@@ -41,7 +45,7 @@ class WaitingMatter:
 
 def waiting_for(store: Store, person: Person, now: datetime) -> tuple[WaitingMatter, ...]:
     """The matters beside flags that this person can do something about, kind by kind."""
-    found = list(_overdue(store, now)) if person.may(Role.CREW) else []
+    found = [*_overdue(store, now), *_unflagged(store, now)] if person.may(Role.CREW) else []
     if person.may(Role.ENGINEER):
         found += _questioned(store)
         found += _certificates(store)
@@ -55,6 +59,14 @@ def _overdue(store: Store, now: datetime) -> Iterator[WaitingMatter]:
         names = joined(", ", units[:MOST]) + (" …" if len(units) > MOST else "")
         text = say("Calibration overdue: {units}.", units=counted(len(units), "unit"))
         yield WaitingMatter(names, text, None, "/due?when=overdue")
+
+
+def _unflagged(store: Store, now: datetime) -> Iterator[WaitingMatter]:
+    """Units that must not be used and have no flag, such as one whose session decided nothing."""
+    wanted = FleetQuery(use=UseAt(Use.NO, now), flagged=False, limit=MOST)
+    units = [unit for unit in Fleet(store).units(wanted) if unit.due is None or unit.due >= now]
+    for serial, use in usable_of(store, units, now).items():
+        yield WaitingMatter(serial, joined(". ", (use.use, use.why)), None, f"/units/{quote(serial)}")
 
 
 def _questioned(store: Store) -> Iterator[WaitingMatter]:

@@ -105,7 +105,7 @@ def list_units(
     wanted = FleetQuery(
         use=None if use is None else UseAt(use, now), verdict=verdict, text=text, reserved=reserved,
         offset=window.offset, limit=window.limit,
-        due_before=due_before, unit_type=unit_type, stand=stand, lot=lot, flagged=flagged,
+        due_before=due_before, unit_type=unit_type, stand=stand, lot=lot, flagged=flagged or None,
         location=location, custodian=custodian, uncalibrated=uncalibrated, retired=retired,
         order=order, backwards=backwards, after=after,
     )  # fmt: skip

@@ -139,13 +139,14 @@ def but_alone(reservations: Reservations) -> str:
         "but {reservations}{rest}: {advice}",
         reservations=joined("; and ", (reservation.text for reservation in named)),
         rest=rest,
-        advice=joined(" and ", advice_of(named)),
+        advice=advice_of(named),
     )
 
 
-def advice_of(reservations: Sequence[Reservation]) -> tuple[str, ...]:
-    """The advice, without repetitions; a wrong file is corrected before anything else."""
-    if any(reservation.kind is Doubt.RECORD for reservation in reservations):
-        reservations = [reservation for reservation in reservations if reservation.kind is Doubt.RECORD]
-    advice = tuple(dict.fromkeys(reservation.advice for reservation in reservations))
-    return tuple(sentence for sentence in advice if not any(sentence in other for other in advice if other != sentence))
+def advice_of(reservations: Sequence[Reservation]) -> str:
+    """The one thing to do first: a wrong file is corrected before anything else, and advice that says more comes before
+    what it holds. Empty without reservations."""
+    of_record = [reservation for reservation in reservations if reservation.kind is Doubt.RECORD]
+    advice = [reservation.advice for reservation in of_record or reservations]
+    whole = (one for one in advice if not any(one in other for other in advice if other != one))
+    return next(whole, "")
