@@ -14,7 +14,6 @@ from babel.messages.pofile import read_po
 
 from estimator.message import Message, filled
 from service.languages.charts import LOCALE, chart_in
-from service.languages.entry import MessageEntry
 from service.languages.language import Language
 
 T = TypeVar("T")
@@ -34,22 +33,20 @@ class Catalogue:
     """Translations into one language."""
 
     def __init__(self, language: Language, stored: Catalog) -> None:
-        self._stored = stored
         self._known = {texts[0]: forms_of(m) for m in stored if (texts := _texts(m.id)) and forms_of(m)}
         self._locale = LOCALE[language]
-        self.plural = c2py(stored.plural_expr)
+        self._plural = c2py(stored.plural_expr)
 
-    def forms(self, message: MessageEntry) -> Sequence[str]:
-        """The translation of a message, one text for every plural form; empty where there is none."""
-        stored = self._stored.get(message.id) or self._stored.get(message.text)
-        return forms_of(stored) if stored else ()
+    def form(self, english: str, number: int | None = None) -> str:
+        """The translation of a whole text or template; of a counted thing, the form for its number."""
+        forms = self._forms(english)
+        return forms[self._plural(number)] if number is not None and len(forms) > 1 else forms[0]
 
     def say(self, text: str) -> str:
         """The translation of an English text; unchanged where there is none."""
         if not isinstance(text, Message):
-            return self._forms(text)[0]
-        forms = self._forms(text.template)
-        form = forms[self.plural(text.number)] if text.number is not None and len(forms) > 1 else forms[0]
+            return self.form(text)
+        form = self.form(text.template, text.number)
         return filled(form, {name: part if name in NAMED else self.say(part) for name, part in text.parts.items()})
 
     def chart(self, definition: Any) -> Any:

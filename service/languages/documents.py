@@ -1,8 +1,11 @@
 """Translation of documents: every text of the data of a template."""
 
+import re
 from collections.abc import Callable
 from typing import Any
 
+SAY_CALL = re.compile(r"\bsay\(\"([^\"]+)\"")
+"""A text in a typesetter's template."""
 UNTRANSLATED = frozenset(
     ("key", "shape", "unit", "serial", "unit_type", "notes", "sha256", "who", "number", "address", "code", "sealed_by")
 )

@@ -3,11 +3,13 @@
 import ast
 import re
 from collections.abc import Iterator
-from dataclasses import replace
 
 from estimator.message import PLACE
-from service.languages.entry import LETTERS, MessageEntry
 
+MessageId = str | tuple[str, ...]
+"""A text as in the source; of a counted thing, what is said of one and of several."""
+LETTERS = re.compile(r"[A-Za-z]{2}")
+"""Pattern that every message contains."""
 SILENT_CALLS = frozenset(
     (
         *("Field", "Query", "Path", "Header", "Body", "Option", "Argument", "Tag", "TypeVar", "NewType", "compile"),
@@ -39,24 +41,20 @@ HELPERS = {
 """Messages of the functions of `estimator.wording` for a counted thing."""
 
 
-def messages(source: str, name: str, *, headings: bool, described: bool = False) -> Iterator[MessageEntry]:
+def messages(source: str, *, headings: bool, described: bool = False) -> Iterator[MessageId]:
     """The messages of a module, in order; ``headings``: also single capitalised words; ``described``: also descriptions
     of fields."""
     for node in _texts_in(ast.parse(source), described=described):
         if isinstance(node, ast.Call):
-            yield replace(_of_call(node), place=name)
+            yield _of_call(node)
         elif isinstance(node, ast.Constant) and _is_message(str(node.value), headings=headings):
-            yield MessageEntry(str(node.value), place=name)
+            yield str(node.value)
 
 
-def said(source: str, name: str) -> Iterator[MessageEntry]:
+def said(source: str) -> Iterator[MessageId]:
     """The messages of a command: the templates of calls, since its help stays English."""
     calls = (node for node in _texts_in(ast.parse(source), described=False) if isinstance(node, ast.Call))
-    return (
-        replace(_of_call(call), place=name)
-        for call in calls
-        if _name(call.func) in TEMPLATES or ERRORS.match(_name(call.func))
-    )
+    return (_of_call(call) for call in calls if _name(call.func) in TEMPLATES or ERRORS.match(_name(call.func)))
 
 
 def finished(source: str) -> Iterator[str]:
@@ -119,11 +117,11 @@ def _templates(call: ast.Call) -> list[str]:
     return [a.value for a in arguments if isinstance(a, ast.Constant) and isinstance(a.value, str)]
 
 
-def _of_call(call: ast.Call) -> MessageEntry:
+def _of_call(call: ast.Call) -> MessageId:
     texts = _templates(call)
     if (name := _name(call.func)) in HELPERS:
         texts = [form.replace("@", texts[0]) for form in HELPERS[name]]
-    return MessageEntry(*texts)
+    return tuple(texts) if len(texts) > 1 else texts[0]
 
 
 def _is_message(text: str, *, headings: bool) -> bool:

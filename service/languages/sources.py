@@ -2,18 +2,30 @@
 
 import re
 from collections.abc import Iterator
+from io import BytesIO
 from pathlib import Path
+
+from babel.messages.extract import extract
 
 from estimator.causes import CATALOGUE, OF_SEVERAL, ON_TURNTABLE, Cause
 from estimator.message import PLACE
 from service.languages import python_sources
-from service.languages.entry import LETTERS, MessageEntry
+from service.languages.documents import SAY_CALL
+from service.languages.plain_text import PlainText
+from service.languages.python_sources import LETTERS, MessageId
 from service.languages.short import COUNTED, NAMES, STANDING_ALONE
-from service.languages.template import Template
-from service.languages.templates import SAY_CALL, literals
 
 ROOT = Path(__file__).parents[2]
 TEMPLATES = "service/*/templates/*.html"
+CALLS = {"_": None, "gettext": None, "ngettext": (1, 2), "say": None}
+"""Calls in templates whose first texts are messages."""
+OPTIONS = {
+    "extensions": f"{PlainText.__module__}.{PlainText.__name__}",
+    "newstyle_gettext": "true",
+    "trimmed": "true",
+    "silent": "false",
+}
+"""Jinja's settings for extraction, as in `service.web.render`; a template that it cannot read is an error."""
 PAPERS = "service/papers/templates"
 HEADING_MODULES = re.compile(
     r"service/(kit/(measures|failure)|web/(in_language|list_view|problem_pages|render)|(pages|papers|planning)/"
@@ -83,32 +95,42 @@ IGNORED = (
 """Texts for programs, for the operator, or fixed by a standard."""
 
 
-def messages() -> Iterator[MessageEntry]:
+Found = tuple[MessageId, str]
+"""A message and its place."""
+
+
+def messages() -> Iterator[Found]:
     """Every message of the product, in the order of its files; some occur in several."""
-    return (message for message in _all() if LETTERS.search(PLACE.sub(" ", message.text)) and message.text not in NAMES)
-
-
-def _all() -> Iterator[MessageEntry]:
-    yield from (MessageEntry(word, place="service/languages/short.py") for word in STANDING_ALONE)
-    yield from (
-        MessageEntry(text, place="estimator/causes")
-        for cause in (*CATALOGUE, *ON_TURNTABLE, *OF_SEVERAL)
-        for text in _names_of(cause)
+    return (
+        (text, place)
+        for text, place in _all()
+        if LETTERS.search(PLACE.sub(" ", text[0] if isinstance(text, tuple) else text)) and text not in NAMES
     )
-    yield from (MessageEntry(f"{{n}} {thing}", f"{{n}} {thing}s", "service/languages/short.py") for thing in COUNTED)
+
+
+def _all() -> Iterator[Found]:
+    yield from ((word, "service/languages/short.py") for word in STANDING_ALONE)
+    yield from (
+        (text, "estimator/causes") for cause in (*CATALOGUE, *ON_TURNTABLE, *OF_SEVERAL) for text in _names_of(cause)
+    )
+    yield from (((f"{{n}} {thing}", f"{{n}} {thing}s"), "service/languages/short.py") for thing in COUNTED)
     for path in sorted(ROOT.glob(TEMPLATES)):
-        template = Template(path.read_text("utf-8"), path.name)
-        yield from (found.message for found in template.messages())
-        yield from (MessageEntry(text, place=path.name) for text in literals(template))
+        yield from ((text, path.name) for text in of_template(path.read_bytes()))
     for path in sorted((ROOT / PAPERS).glob("*.typ")):
-        yield from (MessageEntry(text, place=path.name) for text in SAY_CALL.findall(path.read_text("utf-8")))
+        yield from ((text, path.name) for text in SAY_CALL.findall(path.read_text("utf-8")))
     for path in sorted(path for pattern in COMMANDS for path in ROOT.glob(pattern)):
-        yield from python_sources.said(path.read_text("utf-8"), path.relative_to(ROOT).as_posix())
+        name = path.relative_to(ROOT).as_posix()
+        yield from ((text, name) for text in python_sources.said(path.read_text("utf-8")))
     for path in modules():
         name = path.relative_to(ROOT).as_posix()
         source = path.read_text("utf-8")
         headings, described = HEADING_MODULES.match(name) is not None and not name.endswith("api.py"), name == SETTINGS
-        yield from python_sources.messages(source, name, headings=headings, described=described)
+        yield from ((text, name) for text in python_sources.messages(source, headings=headings, described=described))
+
+
+def of_template(source: bytes) -> Iterator[MessageId]:
+    """The messages of a template, by Babel's extraction for Jinja."""
+    yield from (text for _, text, _, _ in extract("jinja2.ext:babel_extract", BytesIO(source), CALLS, options=OPTIONS))
 
 
 def _names_of(cause: Cause) -> Iterator[str]:

@@ -12,10 +12,8 @@ from estimator.json_object import Json
 from service.kit.libraries import typst, vl_convert
 from service.kit.printable import printable_data
 from service.languages.catalogue import catalogue_of
-from service.languages.documents import document_in
-from service.languages.entry import MessageEntry
+from service.languages.documents import SAY_CALL, document_in
 from service.languages.language import Language
-from service.languages.templates import SAY_CALL
 from service.sessions.charts import ChartSet, Panel
 
 TEMPLATES = Path(__file__).parent / "templates"
@@ -55,7 +53,7 @@ def _words(language: Language) -> Mapping[str, str]:
     if language is ENGLISH:
         return {}
     texts = (text for path in sorted(TEMPLATES.glob("*.typ")) for text in SAY_CALL.findall(path.read_text("utf-8")))
-    return {text: forms[0] for text in texts if (forms := catalogue_of(language).forms(MessageEntry(text)))}
+    return {text: catalogue_of(language).form(text) for text in texts}
 
 
 PALETTE = {

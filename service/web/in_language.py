@@ -1,17 +1,15 @@
 """Language of answers: templates, and headers for caches and browsers."""
 
-from collections.abc import Callable, Sequence
-from pathlib import Path
+from collections.abc import Mapping
 from typing import Any
 
-from jinja2 import BaseLoader, Environment, FileSystemLoader
 from markupsafe import Markup
 from starlette.datastructures import MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from service.languages.catalogue import Catalogue, catalogue_of
+from service.languages.catalogue import catalogue_of
 from service.languages.language import COOKIE, YEAR, Language, asked, chosen_by_query
-from service.languages.templates import in_language
+from service.languages.plain_text import OF_PEOPLE
 
 
 class TemplateLanguage:
@@ -20,9 +18,15 @@ class TemplateLanguage:
     def __init__(self, language: Language) -> None:
         self._catalogue = None if language is Language.ENGLISH else catalogue_of(language)
 
-    def templates(self, folders: Sequence[Path]) -> BaseLoader:
-        """Loader of the templates."""
-        return FileSystemLoader(folders) if self._catalogue is None else _TranslatedLoader(folders, self._catalogue)
+    def gettext(self, sentence: str, /, **values: Any) -> Markup:
+        """A sentence of a template with its values."""
+        return self._filled(sentence if self._catalogue is None else self._catalogue.form(sentence), values)
+
+    def ngettext(self, singular: str, plural: str, number: int | str, /, **values: Any) -> Markup:
+        """A sentence about a number of things."""
+        if self._catalogue is None:
+            return self._filled(singular if int(number) == 1 else plural, values)
+        return self._filled(self._catalogue.form(singular, int(number)), values)
 
     def say(self, value: Any) -> Any:
         """A value of a page in the language; markup and numbers are unchanged."""
@@ -30,24 +34,13 @@ class TemplateLanguage:
             return value
         return self._catalogue.say(value)
 
-    def plural(self, number: int) -> int:
-        """Index of the plural form for a number."""
-        return 0 if self._catalogue is None else self._catalogue.plural(int(number))
-
     def chart(self, data: Any) -> Any:
         """A chart's definition with translated titles."""
         return data if self._catalogue is None else self._catalogue.chart(data)
 
-
-class _TranslatedLoader(FileSystemLoader):
-    def __init__(self, folders: Sequence[Path], catalogue: Catalogue) -> None:
-        super().__init__(folders)
-        self._catalogue = catalogue
-
-    def get_source(self, environment: Environment, template: str) -> tuple[str, str, Callable[[], bool]]:
-        """The translated source."""
-        source, path, is_current = super().get_source(environment, template)
-        return in_language(source, self._catalogue.forms), path, is_current
+    def _filled(self, sentence: str, values: Mapping[str, Any]) -> Markup:
+        said = {name: value if name in OF_PEOPLE else self.say(value) for name, value in values.items()}
+        return Markup(sentence) % said  # noqa: S704 - sentences are of templates and the catalogue; values are escaped
 
 
 READ_BY_PEOPLE = ("text/html", "application/problem+json")

@@ -10,7 +10,7 @@ from urllib.parse import parse_qsl, quote, urlencode
 
 from fastapi import Request
 from fastapi.responses import HTMLResponse
-from jinja2 import Environment, StrictUndefined, pass_context
+from jinja2 import Environment, FileSystemLoader, StrictUndefined, pass_context
 from jinja2.runtime import Context
 from markupsafe import Markup, escape
 
@@ -19,6 +19,7 @@ from estimator.wording import counted
 from service.kit.measures import day_of, heading, spaced
 from service.kit.person import EVERYBODY, Person, Role
 from service.languages.language import QUERY, Language, asked
+from service.languages.plain_text import PlainText
 from service.sessions.words.conditions import CONDITIONS, REFERENCE, RESERVED, but, but_alone
 from service.web.assets import asset_url
 from service.web.in_language import TemplateLanguage
@@ -90,12 +91,16 @@ def _environment(language: Language) -> Environment:
     """The templates in a language; English is the language of the files."""
     translation = TemplateLanguage(language)
     environment = Environment(
-        loader=translation.templates(TEMPLATES),
+        loader=FileSystemLoader(TEMPLATES),
+        extensions=["jinja2.ext.i18n", PlainText],
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    environment.newstyle_gettext = True  # type: ignore[attr-defined]  # of the extension
+    environment.policies["ext.i18n.trimmed"] = True
+    environment.globals.update(gettext=translation.gettext, ngettext=translation.ngettext)
     environment.globals.update(asset=asset_url, explained=(*CONDITIONS, REFERENCE, RESERVED))
     environment.globals.update(
         may=_may, your_name=_your_name, csrf_field=_csrf_field, csrf_query=_csrf_query, say=say, counted=counted
@@ -107,7 +112,6 @@ def _environment(language: Language) -> Environment:
         join=_joined,
         as_written=escape,
         translated=translation.say,
-        plural_form=translation.plural,
         embed=lambda data: embed(translation.chart(data)),
     )
     return environment

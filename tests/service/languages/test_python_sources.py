@@ -2,13 +2,13 @@
 
 import pytest
 
-from service.languages.python_sources import finished, messages
+from service.languages.python_sources import MessageId, finished, messages
 from service.languages.short import NAMES
 from service.languages.sources import modules
 
 
-def found(source: str) -> list[str | tuple[str, str]]:
-    return [one.id for one in messages(source, "x.py", headings=True)]
+def found(source: str) -> list[MessageId]:
+    return list(messages(source, headings=True))
 
 
 @pytest.mark.parametrize(
@@ -26,7 +26,7 @@ def found(source: str) -> list[str | tuple[str, str]]:
         ('a = {"key": "Heading"}', ["Heading"]),
     ],
 )
-def test_messages_of_a_module(source: str, expected: list[str | tuple[str, str]]) -> None:
+def test_messages_of_a_module(source: str, expected: list[MessageId]) -> None:
     assert found(source) == expected
 
 
