@@ -1,8 +1,9 @@
 """Forward selection of a group's findings, each weighed again given the others.
 
-A name needs an e-value of 1/α for the group, given what was found before. A finding must hold without the session that
-shows it most: what one session shows by itself is that session's own affair, and is left free there. Where nameless
-structure on the sensors concerned is as sure as a name must be, the name is taken back: the cause does not fit.
+A name needs an e-value of 1/α for the group, given what was found before. A finding must hold without any one session,
+and one on a type or a stand without any one unit: what one shows by itself is its own affair, and is left free there.
+Where nameless structure on the sensors concerned is as sure as a name must be, the name is taken back: the cause does
+not fit.
 """
 
 from dataclasses import dataclass, replace
@@ -10,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from estimator.groups.evidence import ALPHA, SAME, SINCE, VARYING
-from estimator.groups.layout import STAND, GroupHypothesis, GroupLayout
+from estimator.groups.layout import STAND, UNIT, GroupHypothesis, GroupLayout
 from estimator.groups.pool import Place, Pool, PoolModel, columns_in, pooled
 from estimator.groups.scores import batch
 from estimator.groups.statistics import SessionStatistics
@@ -23,7 +24,7 @@ ENOUGH = float(-np.log(ALPHA))
 """ln e-value of a name."""
 
 STILL = 0.01
-"""p-value that the rest of the sessions must reach without the one that shows a finding most."""
+"""p-value that the rest of the sessions must reach without the one, or the unit, that shows a finding most."""
 
 MOST = 8
 """Findings of a group; what needs more is no sum of catalogue causes."""
@@ -63,7 +64,7 @@ class GroupSelection:
     misfits: tuple[tuple[GroupHypothesis, GroupHypothesis], ...] = ()
     """Names taken back, each with the structure that it left."""
     of_one_session: tuple[tuple[int, Place], ...] = ()
-    """Effects that one session has by itself."""
+    """Effects that one session, or the sessions of one unit, have by themselves."""
     nameless: tuple[Place, ...] = ()
     """Structure that is in the fit."""
     barred: frozenset[tuple[str, ...]] = frozenset()
@@ -148,7 +149,7 @@ def one_more(state: GroupSelection, scale: Scale) -> GroupSelection | None:
     alone = shown_by_one(scale.pool, place, form, since)
     often = sum(p == place for _, p in state.of_one_session) >= max(1, len(state.layout.parts) // FEW)
     if alone is not None and not often:
-        return replace(state, of_one_session=(*state.of_one_session, (alone, place)))
+        return replace(state, of_one_session=(*state.of_one_session, *((session, place) for session in alone)))
     if alone is not None or not within_reason(scale.pool, place):
         return replace(state, barred=state.barred | {hypothesis.group})
     return replace(state, found=(*state.found, Found(place, hypothesis, form, since, scale.log_e_value)))
@@ -163,21 +164,27 @@ def plainly_nameless(state: GroupSelection, scale: Scale) -> GroupSelection | No
     return with_structure(state, scale)
 
 
-def shown_by_one(pool: Pool, place: Place, form: int, since: int) -> int | None:
-    """The session without which the others do not show a hypothesis any more; None where they do."""
+def shown_by_one(pool: Pool, place: Place, form: int, since: int) -> tuple[int, ...] | None:
+    """The sessions of the one unit without which the others do not show a hypothesis any more; None where they do.
+
+    An effect of a unit, and of a stand where only one unit was measured, must hold without any one session.
+    """
     w, k = place
     m = pool.moments[w]
     U, F = m.evidence[:, k], m.F[:, k]
-    chi2, freedom = batch(U, F)
-    strongest = int(chi2.argmax())
-    rest = np.arange(len(U)) != strongest
+    level, units = pool.layout.hypotheses[w][k].level, [part.statistics.unit for part in pool.layout.parts]
+    by_session = level == UNIT or (level == STAND and len(set(units)) == 1)
+    names = range(len(units)) if by_session else units
+    places = {name: n for n, name in enumerate(dict.fromkeys(names))}
+    of_one = np.array([[places[name] == n for name in names] for n in range(len(places))])
     if form == VARYING:
-        statistic, q = float(chi2[rest].sum()), int(freedom[rest].sum())
+        statistic, freedom = (x @ ~of_one.T for x in batch(U, F))
     else:
-        counted = rest & (np.arange(len(U)) >= since)
-        total, used = batch(U[counted].sum(axis=0)[None], F[counted].sum(axis=0)[None])
-        statistic, q = float(total[0]), int(used[0])
-    return None if q > 0 and p_value(statistic, q) < STILL else strongest
+        counted = ~of_one & (np.arange(len(U)) >= since)
+        statistic, freedom = batch(np.tensordot(counted, U, axes=1), np.tensordot(counted, F, axes=1))
+    chance = np.array([1.0 if q <= 0 else p_value(float(t), int(q)) for t, q in zip(statistic, freedom, strict=True)])
+    most = int(chance.argmax())
+    return None if chance[most] < STILL else tuple(np.flatnonzero(of_one[most]).tolist())
 
 
 def within_reason(pool: Pool, place: Place) -> bool:

@@ -8,6 +8,10 @@ import pytest
 
 from benchmarks.study.looks import e_process
 from estimator import CalibrationSession, diagnose_group, diagnose_statistics, statistics_of
+from estimator.groups.evidence import SAME
+from estimator.groups.layout import GroupLayout
+from estimator.groups.pool import pooled
+from estimator.groups.selection import shown_by_one
 from tests.blind.world import Effect
 from tests.estimator.groups.cases import measured, worlds
 
@@ -87,3 +91,32 @@ def test_another_level_is_refused(sessions: list[CalibrationSession]) -> None:
         diagnose_group(sessions[:1], "fleet")
     with pytest.raises(ValueError, match="needs a session"):
         diagnose_group([replace(sessions[0], programme="rate-table")])
+
+
+SERIALS = [f"U{k % 4}" for k in range(12)]
+
+
+def of_type(affected: set[str]) -> list[CalibrationSession]:
+    """Three sessions of each of a type's four units, of which some have a cubic sensor."""
+    cubic = Effect("cubic-nonlinearity", (6e-7,), (1,))
+    every = enumerate(zip(SERIALS, worlds(12, seed=3), strict=True))
+    drawn = [measured(w, [cubic] * (u in affected), k) for k, (u, w) in every]
+    return [replace(s, unit=u, unit_type="T") for u, s in zip(SERIALS, drawn, strict=True)]
+
+
+def test_a_type_is_accused_by_no_single_unit_however_often_it_was_measured() -> None:
+    layout = GroupLayout.of([statistics_of(session) for session in of_type({"U1"})], "type")
+    [place] = [
+        (w, k)
+        for w, table in layout.hypotheses.items()
+        for k, h in enumerate(table)
+        if (h.level, h.cause, h.sensor) == ("type", "cubic-nonlinearity", "A2")
+    ]
+    pool = pooled(layout)
+    assert shown_by_one(pool, place, SAME, 0) == tuple(k for k, unit in enumerate(SERIALS) if unit == "U1")
+
+
+@pytest.mark.parametrize(("affected", "accused"), [({"U1"}, False), ({"U0", "U1", "U2", "U3"}, True)])
+def test_a_type_is_accused_where_its_units_agree(affected: set[str], accused: bool) -> None:
+    found = diagnose_group(of_type(affected), "type").findings
+    assert ("cubic-nonlinearity" in {f.cause for f in found if f.level == "type"}) is accused
