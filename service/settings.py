@@ -140,7 +140,7 @@ class Settings(BaseSettings):
         ge=0,
         le=256,
         description="Processes that make diagnoses and outlooks beside the requests. 0: a diagnosis is made when "
-        "somebody reads it, an outlook with the upload.",
+        "somebody reads it, an outlook with the upload, summaries of the fleet by the service itself.",
     )
     coverage_factor: float = Field(
         default=2.0, gt=0, le=5, description="k: expanded uncertainty and guard band are k times the standard one."
