@@ -25,8 +25,10 @@ def default_data_folder() -> Path:
 
 
 def cores_left() -> int:
-    """One core answers requests; a machine with one shares it."""
-    return max(1, (os.cpu_count() or 1) - 1)
+    """One core answers requests. Two processes at least work beside them, at low priority: beside a long piece, such as
+    a group of a quarter of a minute, a short one that somebody waits for is done.
+    """
+    return max(2, (os.cpu_count() or 1) - 1)
 
 
 PREFIX = "IMU_HEALTH_"
