@@ -27,7 +27,7 @@ from service.web.application import Application
 from service.web.headers import HeadAsGet
 from service.web.measured import RequestLog
 from service.work.job_desk import JobDesk
-from service.work.loop import Worker, take_in_waiting, work_in_background
+from service.work.loop import Worker, summarise_waiting, take_in_waiting, work_in_background
 from service.work.readers import GroupReader, Reader
 from service.work.watch import ask_for_missing, derive_pending, watch_fleet
 
@@ -98,15 +98,17 @@ def _at_work(application: Application) -> Callable[[FastAPI], AbstractAsyncConte
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
         stop = Event()
-        threads = [
-            Thread(target=work, args=(*args, stop), name=name, daemon=True) for name, work, args in _work(application)
-        ]
-        begin = Thread(target=_begin, args=(application, threads, stop), name="begin", daemon=True)
-        begin.start()
+        at_once, later = (
+            [Thread(target=work, args=(*args, stop), name=name, daemon=True) for name, work, args in found]
+            for found in (_requested(application), _unasked(application))
+        )
+        fill = Thread(target=_fill, args=(application, later, stop), name="filling", daemon=True)
+        for thread in (*at_once, fill):
+            thread.start()
         yield
         stop.set()
         application.bell.ring()
-        for thread in (begin, *threads):
+        for thread in (fill, *at_once, *later):
             if thread.ident is not None:
                 await run_in_threadpool(thread.join, LAST_WORK)
         application.storage.database.close()
@@ -114,29 +116,41 @@ def _at_work(application: Application) -> Callable[[FastAPI], AbstractAsyncConte
     return lifespan
 
 
-def _begin(application: Application, threads: Iterable[Thread], stop: Event) -> None:
-    """Begins the work in the background, after the sessions that are to be stored first."""
+def _fill(application: Application, threads: Iterable[Thread], stop: Event) -> None:
+    """Stores the sessions that are to be stored, and begins the work that looks at everything stored."""
     filling = application.find(Filling)
     if filling is not None:
         with Guard(application.metrics).alone("filling", ""):
             filling.run(stop)
+        application.bell.ring()
     for thread in threads:
         thread.start()
 
 
-def _work(application: Application) -> Iterator[tuple[str, Callable[..., None], tuple[object, ...]]]:
-    """The work in the background: name, function and arguments of each thread."""
-    storage, clock, ways = application.storage, application.clock, _ways(application.settings)
-    metrics, k = application.metrics, application.settings.coverage_factor
+Work = tuple[str, Callable[..., None], tuple[object, ...]]
+"""Name, function and arguments of a thread."""
+
+
+def _requested(application: Application) -> Iterator[Work]:
+    """Work that people ask for: it waits for nothing."""
+    ways = _ways(application.settings)
     for number in range(application.settings.diagnosis_workers):
         yield f"diagnoses {number}", work_in_background, (_worker(application),)
     if application.settings.diagnosis_workers:
         yield "uploads", take_in_waiting, (_worker(application),)
-        yield "missing diagnoses", ask_for_missing, (storage, clock, metrics, application.bell)
-    yield "pending derivations", derive_pending, (storage, k, clock, metrics)
-    yield "fleet", watch_fleet, (storage, clock, metrics)
+    else:
+        yield "summaries", summarise_waiting, (_worker(application),)
     if ways.hosts or ways.mail.is_there:
-        yield "outbox", deliver_until, (storage, ways, clock, metrics)
+        yield "outbox", deliver_until, (application.storage, ways, application.clock, application.metrics)
+
+
+def _unasked(application: Application) -> Iterator[Work]:
+    """Work that looks at everything stored for what is missing."""
+    storage, clock, metrics = application.storage, application.clock, application.metrics
+    if application.settings.diagnosis_workers:
+        yield "missing diagnoses", ask_for_missing, (storage, clock, metrics, application.bell)
+    yield "pending derivations", derive_pending, (storage, application.settings.coverage_factor, clock, metrics)
+    yield "fleet", watch_fleet, (storage, clock, metrics)
 
 
 def _ways(settings: Settings) -> Ways:
@@ -145,4 +159,5 @@ def _ways(settings: Settings) -> Ways:
 
 
 def _worker(application: Application) -> Worker:
-    return Worker(application.settings, application.storage, application.clock, application.metrics, application.bell)
+    settings, storage, filling = application.settings, application.storage, application.find(Filling)
+    return Worker(settings, storage, application.clock, application.metrics, application.bell, filling)

@@ -25,8 +25,10 @@ def default_data_folder() -> Path:
 
 
 def cores_left() -> int:
-    """One core answers requests; a machine with one shares it."""
-    return max(1, (os.cpu_count() or 1) - 1)
+    """One core answers requests. Two processes at least work beside them, at low priority: beside a long piece, such as
+    a group of a quarter of a minute, a short one that somebody waits for is done.
+    """
+    return max(2, (os.cpu_count() or 1) - 1)
 
 
 PREFIX = "IMU_HEALTH_"
@@ -140,7 +142,7 @@ class Settings(BaseSettings):
         ge=0,
         le=256,
         description="Processes that make diagnoses and outlooks beside the requests. 0: a diagnosis is made when "
-        "somebody reads it, an outlook with the upload.",
+        "somebody reads it, an outlook with the upload, summaries of the fleet by the service itself.",
     )
     coverage_factor: float = Field(
         default=2.0, gt=0, le=5, description="k: expanded uncertainty and guard band are k times the standard one."

@@ -103,6 +103,14 @@ def patient_readers(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(reader, name, partialmethod(getattr(reader, name), patience=LONG))
 
 
+@pytest.fixture(scope="session", autouse=True)
+def summarised() -> Iterator[None]:
+    """Pages wait until the fleet is summarised, however slow the machine."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Reader, "until_summarised", partialmethod(Reader.until_summarised, patience=LONG))
+        yield
+
+
 @pytest.fixture(scope="session")
 def sqlite() -> Iterator[Databases]:
     """Makes SQLite databases."""

@@ -29,6 +29,8 @@ FEWEST_UNITS = 3
 """Two that differ cannot say which of them changed."""
 SEEN = 1e-3
 """Least part of its information that an event keeps beside those in the model; with less it is one of them."""
+LEAST = 1e-9
+"""Least information of an event as a part of the largest beside it: what rounding leaves of none is not looked at."""
 
 
 @dataclass(frozen=True)
@@ -103,7 +105,7 @@ def columns(groups: Sequence[SeatedUnits], events: Sequence[StandEvent]) -> list
 def chi_squares(pull: Array, free: Array, whole: Array) -> tuple[Array, Array]:
     """(p,) χ² and (p,) bool whether it shows beside the model; pull (p, k), both informations (p, k, k)."""
     traces = np.einsum("pkk->p", free), np.einsum("pkk->p", whole)
-    seen = traces[0] > SEEN * np.maximum(traces[1], 1e-300)
+    seen = traces[0] > SEEN * np.maximum(traces[1], LEAST * traces[1].max(initial=1e-300))
     identity = np.eye(pull.shape[1])
     safe = np.where(seen[:, None, None], free + 1e-9 * traces[1][:, None, None] * identity, identity)
     return np.where(seen, np.einsum("pk,pk->p", pull, np.linalg.solve(safe, pull[..., None])[..., 0]), 0.0), seen

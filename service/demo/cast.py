@@ -153,7 +153,7 @@ CAST = (
         hidden=DemoEffect("axis-creep", (5e-8, 3e-8), sensor=2),
     ),
     DemoMember(
-        "BA-103", ACCELEROMETER, "bias of A3 drifts, still within tolerance", 13,
+        "BA-103", ACCELEROMETER, "bias of A3 drifts, still within tolerance", 9,
         drifts=(DemoDrift(ParameterMove(2, "bias", 34.0)),),
         remarks=(Remark(datetime(2025, 5, 6, 12, 0, tzinfo=UTC), "Moved to the other hangar by road.", "K. Ito"),),
     ),
@@ -162,11 +162,11 @@ CAST = (
         drifts=(DemoDrift(ParameterMove(4, "scale", 104.0)),),
     ),
     DemoMember(
-        "BA-105", ACCELEROMETER, "axis of A2 creeps just over its tolerance", 13,
+        "BA-105", ACCELEROMETER, "axis of A2 creeps just over its tolerance", 9,
         drifts=(DemoDrift(ParameterMove(1, "axis", 23.0), power=1.5),),
     ),
     DemoMember(
-        "BA-106", ACCELEROMETER, "A6 fails: bias and scale factor run away", 15,
+        "BA-106", ACCELEROMETER, "A6 fails: bias and scale factor run away", 12,
         drifts=(
             DemoDrift(ParameterMove(5, "bias", 170.0), power=4.0),
             DemoDrift(ParameterMove(5, "scale", -150.0), power=4.0),
@@ -189,9 +189,9 @@ CAST = (
             ),
         ),
     ),
-    DemoMember("BA-108", ACCELEROMETER, "stable; the last session was too noisy to decide", 12, noise={-1: 60.0}),
+    DemoMember("BA-108", ACCELEROMETER, "stable; the last session was too noisy to decide", 7, noise={-1: 60.0}),
     DemoMember(
-        "BA-109", ACCELEROMETER, "amplifiers of A1 and A4 drifted and were adjusted; measured as found and as left", 11,
+        "BA-109", ACCELEROMETER, "amplifiers of A1 and A4 drifted and were adjusted; measured as found and as left", 9,
         drifts=tuple(
             DemoDrift(ParameterMove(sensor, "scale", gain * YEARS / UNTIL_ADJUSTED), ends=UNTIL_ADJUSTED)
             for sensor, gain in GAINS.items()
@@ -204,7 +204,7 @@ CAST = (
     ),
     DemoMember("BG-201", GYROSCOPE, "stable, but not measured for longer than it may be", 12, left=1.8),
     DemoMember(
-        "BG-202", GYROSCOPE, "bias of G2 drifts towards its tolerance", 13,
+        "BG-202", GYROSCOPE, "bias of G2 drifts towards its tolerance", 10,
         drifts=(DemoDrift(ParameterMove(1, "bias", 0.024)),),
     ),
     DemoMember(

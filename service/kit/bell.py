@@ -1,6 +1,5 @@
 """Wakes the makers of diagnoses when new ones are to be made, and those who wait for a diagnosis when it is there."""
 
-from collections import deque
 from threading import Condition
 
 
@@ -9,7 +8,6 @@ class Bell:
 
     def __init__(self) -> None:
         self._condition, self._rung = Condition(), 0
-        self._urgent: deque[str] = deque()
 
     @property
     def rung(self) -> int:
@@ -26,16 +24,3 @@ class Bell:
         """Waits until it rang once more, or the time is over."""
         with self._condition:
             self._condition.wait_for(lambda: self._rung != rung, seconds)
-
-    def hurry(self, session: str) -> None:
-        """Puts a session before the others because somebody waits for its diagnosis."""
-        if session not in self._urgent:
-            self._urgent.append(session)
-            self.ring()
-
-    def urgent(self) -> str | None:
-        """The session that somebody has waited for the longest."""
-        try:
-            return self._urgent.popleft()
-        except IndexError:
-            return None

@@ -1,4 +1,4 @@
-"""Sessions that are stored beside the first requests, before any other work in the background."""
+"""Sessions of the demonstration that are stored beside the first requests, before any other work on them."""
 
 from collections.abc import Callable
 from threading import Event
@@ -32,6 +32,11 @@ class Filling:
             pass
         finally:
             self._is_over = True
+
+    @property
+    def is_over(self) -> bool:
+        """Whether it has ended."""
+        return self._is_over
 
     @property
     def in_words(self) -> str:

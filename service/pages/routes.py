@@ -60,7 +60,7 @@ from service.uploads.take_in import is_long
 from service.web.application import application_of
 from service.web.dependencies import Now, Reading, SettingsOf
 from service.web.render import SOONEST, follow_seconds, render
-from service.work.dependencies import JobDeskOf, ReadingFleet
+from service.work.dependencies import JobDeskOf, ReaderOf, ReadingFleet
 
 MOST_QUESTIONED = 20
 """Sessions that the fleet page names; the latest."""
@@ -123,9 +123,17 @@ def show_parameter(request: Request, store: Reading, serial: Key, name: Key, raw
 
 @router.get("/units/{serial:path}")
 def show_unit(
-    request: Request, store: Reading, settings: SettingsOf, now: Now, serial: Key, raw: bool = False
+    request: Request,
+    store: Reading,
+    reader: ReaderOf,
+    settings: SettingsOf,
+    now: Now,
+    *,
+    serial: Key,
+    raw: bool = False,
 ) -> HTMLResponse:
     """Shows one unit; ``raw``: histories of its parameters with the common motion of the whole block left in."""
+    reader.look_at_unit(serial)
     report = unit_report(store, serial, now)
     latest = History(store).latest(Units(store).key(serial))
     is_heard = any(point.parameter in TERMS for point in latest)
@@ -156,9 +164,10 @@ def show_unit(
 
 @router.get("/sessions/{id}")
 def show_session(
-    request: Request, store: Reading, storage: StorageOf, settings: SettingsOf, now: Now, id: Key
+    request: Request, store: Reading, storage: StorageOf, reader: ReaderOf, settings: SettingsOf, now: Now, *, id: Key
 ) -> HTMLResponse:
     """One session with its parameters and residuals."""
+    reader.look_at(id)
     report = session_report(store, id)
     made, said = report.diagnosis, SaidOf(store).session(report.session.unit, id)
     questioned = report.session.state is RecordState.QUESTIONED
@@ -180,8 +189,9 @@ def show_session(
 
 
 @router.get("/sessions/{id}/outcome")
-def show_outcome(request: Request, store: Reading, settings: SettingsOf, id: Key) -> HTMLResponse:
+def show_outcome(request: Request, store: Reading, reader: ReaderOf, settings: SettingsOf, id: Key) -> HTMLResponse:
     """Shows the present outcome of an upload, as the card of the upload page."""
+    reader.look_at(id)
     session = Sessions(store).get(id)
     outcome = outcome_of(session, Diagnoses(store).summary(id), retired_in_words(Register(store).get(session.unit)))
     return render(request, "outcome.html", upload_page((outcome,), settings))

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from datetime import datetime
-from enum import StrEnum
+from enum import IntEnum, StrEnum
 
 
 class WorkKind(StrEnum):
@@ -28,6 +28,33 @@ class WorkKind(StrEnum):
     """Message to a webhook, by the number of its delivery."""
 
 
+class Rank(IntEnum):
+    """Place of a piece of work in the order of all background work: the lowest is done first, and of equal ones the
+    oldest request."""
+
+    AWAITED = 0
+    """Somebody looks at the page that shows it."""
+    UPLOADED = 1
+    """Somebody uploaded or asked for what it is about."""
+    FOLLOWING = 2
+    """It rests on the results of many sessions: groups, summaries, recomputations."""
+    DEMONSTRATION = 3
+    """It is about the demonstration fleet alone."""
+    FOLLOWING_DEMONSTRATION = 4
+    """It rests on the results of the demonstration fleet alone."""
+
+
+FOLLOWING = frozenset({WorkKind.GROUP, WorkKind.SUMMARY, WorkKind.RECOMPUTATION})
+"""Kinds that rest on what others find: done before these, they would be done again."""
+
+
+def rank_of(kind: WorkKind, *, is_demonstration: bool) -> Rank:
+    """Rank of work that nobody looks at."""
+    if is_demonstration:
+        return Rank.FOLLOWING_DEMONSTRATION if kind in FOLLOWING else Rank.DEMONSTRATION
+    return Rank.FOLLOWING if kind in FOLLOWING else Rank.UPLOADED
+
+
 class WorkState(StrEnum):
     """Whether it is still attempted."""
 
@@ -46,3 +73,4 @@ class Waiting:
     """Time of the next attempt after a failed one; None where there was none."""
     failed: str
     """Reason of the last failed attempt; empty where none failed."""
+    rank: Rank

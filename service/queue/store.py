@@ -7,6 +7,7 @@ from uuid import uuid4
 
 from sqlalchemy import (
     ColumnElement,
+    Select,
     String,
     Update,
     and_,
@@ -23,7 +24,8 @@ from sqlalchemy import (
 from sqlalchemy.orm import InstrumentedAttribute, aliased
 
 from service.kit.failure import AT_FAULT
-from service.queue.records import Waiting, WorkKind, WorkState
+from service.queue.records import Rank, Waiting, WorkKind, WorkState, rank_of
+from service.queue.subjects_store import of_demonstration
 from service.queue.tables import SINGLE, WorkRow
 from service.sessions.tables import SessionRow
 from service.storage.queries import Queries, Store
@@ -42,6 +44,11 @@ class PendingWork(Queries):
         counted = select(WorkRow.kind, func.count(func.distinct(WorkRow.key))).where(WorkRow.failed.is_(None))
         return {WorkKind(kind): count for kind, count in self._session.execute(counted.group_by(WorkRow.kind))}
 
+    def first(self, kinds: Iterable[WorkKind], now: datetime, limit: int, last: Rank) -> list[tuple[WorkKind, str]]:
+        """Unclaimed work of some kinds that is due, in order, up to a rank."""
+        query = _in_order(now).where(WorkRow.kind.in_(tuple(kinds)), WorkRow.rank <= last).limit(limit)
+        return [(WorkKind(kind), key) for kind, key in self._session.execute(query)]
+
 
 class WorkQueue(Queries):
     """Work of one kind, across all processes of all services on this database."""
@@ -52,22 +59,23 @@ class WorkQueue(Queries):
 
     def enqueue_once(self, keys: Iterable[str], now: datetime) -> None:
         """Requests work; a request that exists is left alone."""
-        self.insert_all_once(WorkRow, [self._new(key, now) for key in keys])
+        self.insert_all_once(WorkRow, self._new(keys, now))
 
     def enqueue_again(self, key: str, now: datetime) -> None:
         """Requests work; work in progress is repeated, and failed work is attempted at once."""
-        new = self._upsert(WorkRow).values(**self._new(key, now))
-        reset = {
+        new = self._upsert(WorkRow).values(self._new((key,), now))
+        changed: dict[str, Any] = {
             name: case((_HAS_FAILED, value), else_=getattr(WorkRow, name)) for name, value in RETRY_AT_ONCE.items()
         }
+        changed["rank"] = case((WorkRow.rank < new.excluded.rank, WorkRow.rank), else_=new.excluded.rank)
         upsert = new.on_conflict_do_update(
-            index_elements=["kind", "key"], index_where=SINGLE, set_={"ticket": new.excluded.ticket, **reset}
+            index_elements=["kind", "key"], index_where=SINGLE, set_={"ticket": new.excluded.ticket, **changed}
         )
         self._session.execute(upsert)
 
     def enqueue_each(self, keys: Iterable[str], now: datetime) -> None:
         """Requests work in additional rows, also where it is requested already; failed work is attempted at once."""
-        rows = [self._new(key, now) for key in keys]
+        rows = self._new(keys, now)
         if rows:
             self._session.execute(insert(WorkRow), rows)
         for row in rows:
@@ -75,9 +83,9 @@ class WorkQueue(Queries):
 
     def get(self, key: str) -> Waiting | None:
         """A piece of pending work; None where there is no request."""
-        query = select(WorkRow.ticket, WorkRow.not_before, WorkRow.failed).where(*self._is(key))
+        query = select(WorkRow.ticket, WorkRow.not_before, WorkRow.failed, WorkRow.rank).where(*self._is(key))
         row = self._session.execute(query.order_by(WorkRow.failed.is_(None), WorkRow.id)).first()
-        return None if row is None else Waiting(row[0], row[1], row[2] or "")
+        return None if row is None else Waiting(row[0], row[1], row[2] or "", Rank(row[3]))
 
     def failed(self, key: str) -> str:
         """Reason of the last failed attempt; empty where none failed."""
@@ -98,18 +106,25 @@ class WorkQueue(Queries):
         conditions = (WorkRow.kind == self._kind, WorkRow.key.startswith(prefix, autoescape=True))
         return tuple(self._session.scalars(select(WorkRow.ticket).where(*conditions)))
 
+    def any_pending(self) -> bool:
+        """Whether any is requested that has not failed."""
+        query = select(WorkRow.id).where(WorkRow.kind == self._kind, WorkRow.failed.is_(None)).limit(1)
+        return self._session.scalar(query) is not None
+
     def count(self) -> int:
         """Number of pending pieces."""
         query = select(func.count()).select_from(WorkRow).where(WorkRow.kind == self._kind)
         return self._session.scalar(query) or 0
 
     def waiting(self, now: datetime, limit: int) -> tuple[str, ...]:
-        """Unclaimed work that is due, the oldest request first."""
-        same_work = (_Other.kind == WorkRow.kind, _Other.key == WorkRow.key)
-        is_blocked = or_(_Other.lease_until > now, _Other.not_before > now, _Other.state == WorkState.FAILED)
-        is_first = ~exists().where(*same_work, or_(is_blocked, _Other.id < WorkRow.id))
-        query = select(WorkRow.key).where(WorkRow.kind == self._kind, is_first)
-        return tuple(self._session.scalars(query.order_by(WorkRow.asked_at, WorkRow.id).limit(limit)))
+        """Unclaimed work that is due, in order."""
+        query = _in_order(now).where(WorkRow.kind == self._kind).limit(limit)
+        return tuple(key for _, key in self._session.execute(query))
+
+    def hurry(self, *keys: str) -> None:
+        """Puts pieces before all that nobody waits for: somebody looks at them."""
+        pieces = update(WorkRow).where(WorkRow.kind == self._kind, WorkRow.key.in_(keys))
+        self._session.execute(pieces.where(WorkRow.rank > Rank.AWAITED).values(rank=Rank.AWAITED))
 
     def claim(self, key: str, now: datetime, until: datetime) -> int | None:
         """Leases a piece of work; the number of leases since an attempt ended with an answer. None where another
@@ -193,11 +208,16 @@ class WorkQueue(Queries):
         conditions = (WorkRow.kind == self._kind, WorkRow.key.in_(tuple(keys)), _is_free(now))
         return tuple(self._session.scalars(delete(WorkRow).where(*conditions).returning(WorkRow.key)))
 
-    def _new(self, key: str, now: datetime) -> dict[str, Any]:
-        return {
-            "kind": self._kind, "key": key, "asked_at": now, "ticket": uuid4().hex, "state": WorkState.WAITING,
-            "attempts": 0,
-        }  # fmt: skip
+    def _new(self, keys: Iterable[str], now: datetime) -> list[dict[str, Any]]:
+        wanted = tuple(keys)
+        shown = of_demonstration(self._session, self._kind, wanted)
+        return [
+            {
+                "kind": self._kind, "key": key, "asked_at": now, "ticket": uuid4().hex, "state": WorkState.WAITING,
+                "attempts": 0, "rank": rank_of(self._kind, is_demonstration=key in shown),
+            }
+            for key in wanted
+        ]  # fmt: skip
 
     def _is(self, key: str) -> tuple[ColumnElement[bool], ColumnElement[bool]]:
         return WorkRow.kind == self._kind, WorkRow.key == key
@@ -207,6 +227,15 @@ class WorkQueue(Queries):
 
 
 _HAS_FAILED = WorkRow.failed.is_not(None)
+
+
+def _in_order(now: datetime) -> Select[str, str]:
+    """Unclaimed work that is due, a row a piece: by rank, then the oldest request first."""
+    same_work = (_Other.kind == WorkRow.kind, _Other.key == WorkRow.key)
+    is_blocked = or_(_Other.lease_until > now, _Other.not_before > now, _Other.state == WorkState.FAILED)
+    is_before = or_(_Other.rank < WorkRow.rank, and_(_Other.rank == WorkRow.rank, _Other.id < WorkRow.id))
+    is_first = ~exists().where(*same_work, or_(is_blocked, is_before))
+    return select(WorkRow.kind, WorkRow.key).where(is_first).order_by(WorkRow.rank, WorkRow.asked_at, WorkRow.id)
 
 
 def _is_free(now: datetime) -> ColumnElement[bool]:

@@ -22,13 +22,16 @@ class WorkRow(Base):
         Index("uq_work_single", "kind", "key", unique=True, **only_where(IS_SINGLE)),
         Index("ix_work_kind_key", "kind", "key"),
         Index("ix_work_kind_asked_at", "kind", "asked_at"),
+        Index("ix_work_rank_asked_at", "rank", "asked_at"),
     )
     id: Mapped[int] = mapped_column(primary_key=True)
     kind: Mapped[str] = mapped_column(String(20))
     key: Mapped[str] = mapped_column(String(250))
     """Identifies the work, see `WorkKind`."""
+    rank: Mapped[int] = mapped_column(server_default="1")
+    """See `Rank`."""
     asked_at: Mapped[datetime]
-    """Position in the queue: time of the request, or of the last failed or partial attempt."""
+    """Position among work of the same rank: time of the request, or of the last failed or partial attempt."""
     ticket: Mapped[str] = mapped_column(String(32))
     """Changes whenever the input of the work changes: a result made under an older ticket is not stored."""
     state: Mapped[str] = mapped_column(String(10))

@@ -83,12 +83,18 @@ class Units(Queries):
         type_id = select(UnitTypeRow.id).where(UnitTypeRow.name == unit_type).scalar_subquery()
         self.insert_once(UnitRow, serial=serial, unit_type_id=type_id, simulated=simulated)
 
-    def begin(self, serial: str, unit_type: str, simulated: bool) -> None:
+    def begin(self, serial: str, unit_type: str, simulated: bool, *, is_demonstration: bool = False) -> None:
         """A unit that was only registered until now is of the type and the origin of its first session."""
         type_id = select(UnitTypeRow.id).where(UnitTypeRow.name == unit_type).scalar_subquery()
         unmeasured = update(UnitRow).where(UnitRow.serial == serial, ~HAS_SESSION)
-        self._session.execute(unmeasured.values(unit_type_id=type_id, simulated=simulated))
+        first = unmeasured.values(unit_type_id=type_id, simulated=simulated, is_demonstration=is_demonstration)
+        self._session.execute(first)
         self._session.info.pop(("simulated", serial), None)
+
+    def set_own(self, serial: str) -> None:
+        """Records that somebody uploads a session of a unit, which is not of the demonstration alone any more."""
+        statement = update(UnitRow).where(UnitRow.serial == serial, UnitRow.is_demonstration)
+        self._session.execute(statement.values(is_demonstration=False))
 
     def held(self, serial: str) -> int | None:
         """The key of a unit that is there, with the unit held until the transaction ends: its sessions are judged one

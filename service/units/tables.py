@@ -2,7 +2,7 @@
 
 from datetime import datetime
 
-from sqlalchemy import ForeignKey, String, UniqueConstraint
+from sqlalchemy import ForeignKey, String, UniqueConstraint, false
 from sqlalchemy.orm import Mapped, mapped_column
 
 from service.storage.columns import BYTES
@@ -17,6 +17,8 @@ class UnitRow(Base):
     serial: Mapped[str] = mapped_column(String(200), unique=True)
     unit_type_id: Mapped[int] = mapped_column(ForeignKey("unit_types.id"), index=True)
     simulated: Mapped[bool]
+    is_demonstration: Mapped[bool] = mapped_column(server_default=false())
+    """Whether nobody but the demonstration uploaded a session of it."""
     lot: Mapped[str | None] = mapped_column(String(200))
     customer: Mapped[str] = mapped_column(String(200), server_default="")
     customer_address: Mapped[str] = mapped_column(String(2000), server_default="")

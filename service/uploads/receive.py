@@ -23,7 +23,7 @@ from service.judging.calibrate import Calibrated, basis_of, calibrate
 from service.judging.origin import require_one_origin
 from service.judging.plausible import doubts
 from service.judging.reference import KnownUnit, known_unit
-from service.kit.arriving_files import Content, held, where
+from service.kit.arriving_files import DEMONSTRATION, Content, held, where
 from service.kit.copying import copied
 from service.models.rules import model_for
 from service.queue.records import WorkKind
@@ -265,15 +265,17 @@ def _derived(
 def _unit(store: Store, received: Received, new: Calibrated) -> int:
     """The unit, locked, stored with its type when this is its first session: concurrent uploads wait here."""
     serial = new.checked.session.unit
-    unit = Units(store).held(serial)
+    unit, is_demonstration = Units(store).held(serial), received.who == DEMONSTRATION
     if unit is None or not Units(store).exists(serial):
         unit_type, is_simulated = type_of(new.checked, new.calibration), new.checked.session.is_simulated
         UnitTypes(store).add_once(unit_type, received.at)
         Units(store).add_once(serial, unit_type.name, is_simulated)
-        Units(store).begin(serial, unit_type.name, is_simulated)
+        Units(store).begin(serial, unit_type.name, is_simulated, is_demonstration=is_demonstration)
         unit = Units(store).hold(serial)
     if require_one_origin(store, new.checked.session):
         Units(store).set_simulated(serial, new.checked.session.is_simulated)
+    if not is_demonstration:
+        Units(store).set_own(serial)
     return unit
 
 

@@ -36,4 +36,4 @@ GroupReaderOf = Annotated[GroupReader, Depends(_groups)]
 JobDeskOf = Annotated[JobDesk, Depends(_jobs)]
 """The desk at which long jobs are requested."""
 ReadingFleet = Annotated[Store, Depends(_summarised, scope="function")]
-"""A store for reading the fleet; its summaries are made first where no background process makes them."""
+"""A store for reading the fleet; small ones wait for its summaries where no process makes them."""

@@ -57,8 +57,6 @@ class Kind:
     """Records that the program failed, or its process died, every time; None where the queue records it."""
     most: int = MOST_ATTEMPTS
     put_off: timedelta = PUT_OFF
-    is_awaited: bool = False
-    """Whether somebody may wait for a piece, which is then done first."""
 
     def queue(self, store: Store) -> WorkQueue:
         """The queue of this kind of work."""
@@ -144,7 +142,7 @@ def _give_up_model(storage: Storage, key: str, now: datetime) -> None:
         Jobs(store).count_unit(task.revision, RecalibrationPiece(failure=JobFailure(task.unit, AT_FAULT)), now)
 
 
-DIAGNOSES = Kind("pending diagnoses", WorkKind.DIAGNOSIS, diagnose.diagnose, diagnose.give_up, is_awaited=True)
+DIAGNOSES = Kind("pending diagnoses", WorkKind.DIAGNOSIS, diagnose.diagnose, diagnose.give_up)
 OUTLOOKS = Kind(
     "pending outlooks", WorkKind.OUTLOOK, lambda storage, serial, now, _: refresh_beside(storage, serial, now)
 )
@@ -173,8 +171,5 @@ UPLOADS = Kind(
     most=MOST_ATTEMPTS_OF_FILE,
     put_off=PUT_OFF_FILE,
 )
-IN_TURN: tuple[Kind, ...] = (OUTLOOKS, MODELS, JOBS, DIAGNOSES)
-"""One of each in turn, so that none waits for all of the others."""
-AT_LAST: tuple[Kind, ...] = (SUMMARIES, GROUPS)
-"""Done when nothing else waits: summaries depend on all outlooks, and groups on every diagnosis."""
-KINDS = {kind.kind: kind for kind in (*IN_TURN, *AT_LAST)}
+KINDS = {kind.kind: kind for kind in (OUTLOOKS, MODELS, JOBS, DIAGNOSES, SUMMARIES, GROUPS)}
+"""Kinds that one process does, in the order of `Rank`."""

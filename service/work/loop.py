@@ -6,22 +6,25 @@ A claim is a short lease, which is extended during the work. Where a process die
 starts again.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from threading import Event, Thread
 
 from service.kit.bell import Bell
+from service.kit.filling import Filling
 from service.kit.guard import FORESEEN, Failure, Guard, ending_here
 from service.kit.log import log
 from service.kit.metrics import Metrics
+from service.queue.records import Rank
+from service.queue.store import PendingWork
 from service.records.reception import Reception
 from service.settings import Settings
 from service.storage import Storage
 from service.uploads.take_in import take_in
 from service.work.helper import Helper, KeepGoing, StoppingError
-from service.work.kinds import AT_LAST, DIAGNOSES, IN_TURN, LEASE, UPLOADS, Kind
+from service.work.kinds import DIAGNOSES, KINDS, LEASE, SUMMARIES, UPLOADS, Kind
 
 LEASE_EXTENSION = timedelta(seconds=10)
 """Time between two extensions of a lease."""
@@ -29,8 +32,8 @@ POLL_SECONDS = 1.0
 """Seconds between two checks for work requested by other services; for work of this one the bell rings."""
 RETRY_SECONDS = 60.0
 """Seconds after a check that failed, as when the database is unavailable."""
-UPLOAD_EXTENSION_SECONDS = 5.0
-"""Seconds between two extensions of the lease of an upload."""
+EXTENSION_SECONDS = 5.0
+"""Seconds between two extensions of the lease of what a thread of the service does."""
 Make = Callable[[Kind, str, datetime, KeepGoing], Failure | None]
 """Does one piece of work in a process."""
 
@@ -44,6 +47,14 @@ class Worker:
     clock: Callable[[], datetime]
     metrics: Metrics
     bell: Bell
+    filling: Filling | None = None
+    """Demonstration that is being stored: until its end nothing else is done about it, so that it is always the same.
+    """
+
+    @property
+    def last_rank(self) -> Rank:
+        """The last rank of the work that is done now."""
+        return Rank.FOLLOWING if self.filling is not None and not self.filling.is_over else max(Rank)
 
 
 def work_in_background(worker: Worker, stop: Event) -> None:
@@ -51,15 +62,27 @@ def work_in_background(worker: Worker, stop: Event) -> None:
     helper = Helper(worker.settings)
 
     def work() -> bool:
-        """One piece of each kind in turn, else one of the others; whether there was any."""
+        """The next piece; whether there was any."""
         helper.start()
-        worked = [work_next(worker, helper.make, stop, kind) for kind in IN_TURN]
-        return any(worked) or any(work_next(worker, helper.make, stop, kind) for kind in AT_LAST)
+        return work_next(worker, helper.make, stop, *KINDS.values())
 
     try:
         _work_until(worker, stop, DIAGNOSES.name, work)
     finally:
         helper.end()
+
+
+def summarise_waiting(worker: Worker, stop: Event) -> None:
+    """Makes waiting summaries of the fleet until ``stop`` is set, where no process does: they take minutes in a large
+    fleet, and no page waits for them."""
+
+    def make(kind: Kind, place: str, now: datetime, keep_going: KeepGoing) -> Failure | None:
+        assert kind.make is not None
+        with ending_here(kind.kind.value, place) as outcome, _lease_extended(keep_going):
+            kind.make(worker.storage, place, now, worker.settings.coverage_factor)
+        return outcome.failure
+
+    _work_until(worker, stop, SUMMARIES.name, lambda: work_next(worker, make, stop, SUMMARIES))
 
 
 def take_in_waiting(worker: Worker, stop: Event) -> None:
@@ -77,12 +100,12 @@ def _work_until(worker: Worker, stop: Event, name: str, work: Callable[[], bool]
         worker.bell.wait(rung, RETRY_SECONDS if guard.failed else POLL_SECONDS)
 
 
-def work_next(worker: Worker, make: Make, stop: Event, kind: Kind) -> bool:
-    """Does the next piece of a kind; whether there was any."""
-    claimed = _claimed(worker, kind)
+def work_next(worker: Worker, make: Make, stop: Event, *kinds: Kind) -> bool:
+    """Does the next piece of some kinds; whether there was any."""
+    claimed = _claimed(worker, kinds)
     if claimed is None:
         return False
-    key, attempts = claimed
+    kind, key, attempts = claimed
     if attempts > kind.most:
         log.error("work beside the requests given up", work=kind.name, of=key)
         kind.end(worker.storage, key, worker.clock())
@@ -92,16 +115,16 @@ def work_next(worker: Worker, make: Make, stop: Event, kind: Kind) -> bool:
     return True
 
 
-def _claimed(worker: Worker, kind: Kind) -> tuple[str, int] | None:
-    """The piece somebody waits for, else the oldest request; with the number of its leases."""
-    now, urgent = worker.clock(), worker.bell.urgent() if kind.is_awaited else None
+def _claimed(worker: Worker, kinds: Iterable[Kind]) -> tuple[Kind, str, int] | None:
+    """The first piece in order, with the number of its leases."""
+    now, by_name = worker.clock(), {kind.kind: kind for kind in kinds}
     with worker.storage.database.reading() as store:
-        waiting = kind.queue(store).waiting(now, 1 + worker.settings.diagnosis_workers)
-    for key in (*(() if urgent is None else (urgent,)), *waiting):
+        waiting = PendingWork(store).first(by_name, now, 1 + worker.settings.diagnosis_workers, worker.last_rank)
+    for name, key in waiting:
         with worker.storage.database.writing() as store:
-            attempts = kind.queue(store).claim(key, now, now + LEASE)
+            attempts = by_name[name].queue(store).claim(key, now, now + LEASE)
         if attempts is not None:
-            return key, attempts
+            return by_name[name], key, attempts
     return None
 
 
@@ -169,11 +192,11 @@ def _lease_extended(keep_going: KeepGoing) -> Iterator[None]:
     done = Event()
 
     def extend() -> None:
-        while not done.wait(UPLOAD_EXTENSION_SECONDS):
+        while not done.wait(EXTENSION_SECONDS):
             with suppress(*FORESEEN):
                 keep_going()
 
-    thread = Thread(target=extend, name="claim of an upload", daemon=True)
+    thread = Thread(target=extend, name="lease", daemon=True)
     thread.start()
     try:
         yield

@@ -13,14 +13,14 @@ from estimator.errors import SessionError
 from service.diagnosis.records import StoredDiagnosis
 from service.diagnosis.words.diagnosis import STILL_MADE
 from service.errors import PendingError, ServiceError
-from service.fleet.changes import summarise_all
+from service.fleet.store import Fleet
 from service.groups.records import Group, GroupAnswer, Level
 from service.groups.store import Groups
 from service.kit.bell import Bell
 from service.kit.failure import group_failed
 from service.kit.guard import Guard
 from service.kit.metrics import Metrics
-from service.queue.records import Waiting, WorkKind
+from service.queue.records import Rank, Waiting, WorkKind
 from service.queue.store import WorkQueue
 from service.records import refresh_group
 from service.records.diagnose import diagnose, give_up, known_of
@@ -29,7 +29,7 @@ from service.records.refresh_group import current
 from service.sessions.store import Sessions
 from service.settings import VERSION
 from service.storage import Storage
-from service.work.kinds import DIAGNOSES, GROUPS, OUTLOOKS, PUT_OFF, SUMMARIES
+from service.work.kinds import DIAGNOSES, GROUPS, OUTLOOKS, PUT_OFF
 
 PATIENCE = 15.0
 """Seconds that a program waits: a usual diagnosis takes one or two, and a few may be before it."""
@@ -67,7 +67,7 @@ class Reader:
             return known
         if self._is_left_to_readers(request):
             return self._made(id)
-        self.bell.hurry(id)
+        hurry(self.storage, self.bell, WorkKind.DIAGNOSIS, id)
         if not self._places.acquire(blocking=False):
             return None
         try:
@@ -92,6 +92,7 @@ class Reader:
             return True
         if not self.workers:
             return self._date(serial)
+        hurry(self.storage, self.bell, WorkKind.OUTLOOK, serial)
         if not self._places.acquire(blocking=False):
             return False
         try:
@@ -99,15 +100,36 @@ class Reader:
         finally:
             self._places.release()
 
-    def until_summarised(self) -> None:
-        """Makes the summaries of the fleet where no process does."""
+    def until_summarised(self, patience: float = PAGE_PATIENCE) -> None:
+        """Waits for the summaries of the fleet where the service itself makes them: those of a small one are there at
+        once, and of a large one the previous ones are shown."""
+        if self.workers or self._is_summarised() or not self._places.acquire(blocking=False):
+            return
+        try:
+            self.bell.ring()
+            _awaited(self.bell, lambda: self._is_summarised() or None, patience)
+        finally:
+            self._places.release()
+
+    def look_at(self, id: str) -> None:
+        """Somebody looks at a session: its diagnosis comes first."""
         if self.workers:
+            hurry(self.storage, self.bell, WorkKind.DIAGNOSIS, id)
+
+    def look_at_unit(self, serial: str) -> None:
+        """Somebody looks at a unit: its outlook and the diagnosis of its latest session come first."""
+        if not self.workers:
             return
         with self.storage.database.reading() as store:
-            is_requested = WorkQueue(store, WorkKind.SUMMARY).count() > 0
-        if is_requested:
-            with Guard(self.metrics).at_request(SUMMARIES.name, ""):
-                summarise_all(self.storage, self.clock())
+            summary = Fleet(store).unit(serial)
+        if summary is None or summary.last_session is None:
+            return
+        hurry(self.storage, self.bell, WorkKind.OUTLOOK, serial)
+        self.look_at(summary.last_session)
+
+    def _is_summarised(self) -> bool:
+        with self.storage.database.reading() as store:
+            return not WorkQueue(store, WorkKind.SUMMARY).any_pending()
 
     def _date(self, serial: str) -> bool:
         """Makes the outlook here; a failure is recorded, and not awaited."""
@@ -186,7 +208,7 @@ class GroupReader:
         if request is None:
             with self.storage.database.writing() as store:
                 WorkQueue(store, WorkKind.GROUP).enqueue_each((group.place,), self.clock())
-            self.bell.ring()
+        hurry(self.storage, self.bell, WorkKind.GROUP, group.place)
         if not self.places.acquire(blocking=False):
             return None
         try:
@@ -209,6 +231,16 @@ class GroupReader:
     def _known(self, group: Group) -> GroupAnswer | None:
         with self.storage.database.reading() as store:
             return current(store, group)
+
+
+def hurry(storage: Storage, bell: Bell, kind: WorkKind, key: str) -> None:
+    """Puts a piece of work first because somebody looks at what shows it."""
+    with storage.database.reading() as store:
+        request = WorkQueue(store, kind).get(key)
+    if request is not None and request.rank > Rank.AWAITED:
+        with storage.database.writing() as store:
+            WorkQueue(store, kind).hurry(key)
+        bell.ring()
 
 
 def _awaited(bell: Bell, look: Callable[[], T | None], patience: float) -> T | None:

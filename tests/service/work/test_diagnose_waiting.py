@@ -205,7 +205,8 @@ def test_a_starting_service_asks_for_what_is_missing(storage: Storage) -> None:
 @one_engine
 def test_what_somebody_waits_for_comes_first(own: Worker, helper: Helper) -> None:
     first, second = stored(own.storage, 1), stored(own.storage, 2)
-    own.bell.hurry(second)
+    with own.storage.database.writing() as store:
+        WorkQueue(store, WorkKind.DIAGNOSIS).hurry(second)
     work_next(own, helper.make, Event(), DIAGNOSES)
     assert (waiting(own.storage), state_of(own.storage, second)) == ((first,), DiagnosisState.NOTHING)
 
