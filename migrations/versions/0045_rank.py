@@ -1,14 +1,14 @@
 """Background work has one order: what somebody looks at, what somebody uploaded, what rests on many sessions, and the
 demonstration, whose units are marked.
 
-Revision: 0044, after 0043
+Revision: 0045, after 0044
 """
 
 import sqlalchemy as sa
 from alembic import op
 
-revision = "0044"
-down_revision = "0043"
+revision = "0045"
+down_revision = "0044"
 branch_labels = None
 depends_on = None
 
