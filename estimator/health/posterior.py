@@ -85,8 +85,8 @@ class Hypotheses:
     """(G,) place of the shape; 0 without a change."""
 
 
-def hypotheses_of(fitted: Fits, prior: Prior) -> Hypotheses:
-    """All hypotheses, by prior times likelihood."""
+def hypotheses_of(fitted: Fits, prior: Prior, given: Sequence[Kind] = ()) -> Hypotheses:
+    """All hypotheses, by prior times likelihood; of the kinds that are given alone, where any are."""
     expected = np.log(np.maximum(prior.joint(fitted.span), 1e-300)) + fitted.log_likelihood.sum(axis=1)[:, None]
     logs, parts, places = [expected[:, :1]], [np.zeros(1, dtype=int)], [np.zeros(1, dtype=int)]
     for kind in CHANGES:
@@ -96,6 +96,8 @@ def hypotheses_of(fitted: Fits, prior: Prior) -> Hypotheses:
             parts.append(np.full(len(shape), p))
             places.append(shape)
     log = np.concatenate(logs, axis=1)
+    if given:
+        log[:, ~np.isin(PART_KINDS[np.concatenate(parts)], given)] = -np.inf
     weight = np.exp(log - log.max())
     walk, column = np.indices(log.shape).reshape(2, -1)
     return Hypotheses(
@@ -108,7 +110,11 @@ def hypotheses_of(fitted: Fits, prior: Prior) -> Hypotheses:
 
 
 def draw(
-    alternatives: Sequence[tuple[Readings, float]], family: Shapes, prior: Prior, rng: np.random.Generator
+    alternatives: Sequence[tuple[Readings, float]],
+    family: Shapes,
+    prior: Prior,
+    rng: np.random.Generator,
+    given: Sequence[Kind] = (),
 ) -> Draws:
     """Draws of what the readings leave open.
 
@@ -118,9 +124,10 @@ def draw(
         one.
     family : shapes at the readings' dates.
     prior : of the type.
+    given : kinds of change of which one is known to act; empty where nothing is known.
     """
     fitted = [fits(readings, family) for readings, _ in alternatives]
-    every = [hypotheses_of(candidate, prior) for candidate in fitted]
+    every = [hypotheses_of(candidate, prior, given) for candidate in fitted]
     logs = np.array([all_of.log_evidence + log for all_of, (_, log) in zip(every, alternatives, strict=True)])
     share = np.exp(logs - np.logaddexp.reduce(logs))
     likely = [int(i) for i in np.flatnonzero(share > FAINT)]

@@ -68,6 +68,8 @@ def given_temperature(logs: Array, warmth: Warmth | None) -> Array:
 
 RECENT = 60
 """Sessions, the newest, that a history is made of; older ones hardly tell of what goes on now."""
+GOES_ON = (*DRIFTS, Kind.SETTLING)
+"""Kinds of change of which one acts where a drift is found: so the trend agrees with the change that is told."""
 KNOWN = 0.5
 """A level is known well enough for a forecast while its sigma is below this part of the tolerance: U = 2·u below T, as
 the decision rule asks."""
@@ -209,7 +211,8 @@ def _outlook(track: Track, prior: Prior, ahead: Array, number_and_level: tuple[i
     dof, temperature = _conditions(track)
     detected = detect(readings, prior.usual_walk, dof, temperature, level)
     family = courses(readings.time, felt(detected.warmth, temperature))
-    draws = draw(alternatives(detected, prior), family, prior, rng)
+    given = GOES_ON if any(change.kind in DRIFTS for change in detected.changes) else ()
+    draws = draw(alternatives(detected, prior), family, prior, rng, given)
     stays = staying(draws, prior, swing(detected.warmth, draws, temperature), rng)
     chance = passed(draws.weight, stays)
     along = direction(track)

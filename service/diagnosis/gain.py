@@ -59,6 +59,16 @@ class GainView:
     verdict_before: Condition
     verdict_after: Condition | None
 
+    @property
+    def shows_nothing(self) -> bool:
+        """Whether neither a prediction, nor a parameter, nor the verdict is another with the causes in the model."""
+        return self.is_none and not self.moved and not self.changes_verdict
+
+    @property
+    def changes_verdict(self) -> bool:
+        """Whether the verdict is another with the causes in the model."""
+        return self.verdict_after not in (None, self.verdict_before)
+
 
 def gain_view(
     gain: Gain, before: Calibration, after: Calibration, verdict: Verdict, verdict_after: Verdict | None

@@ -31,6 +31,7 @@ from service.diagnosis.words.gain import gain_in_words
 from service.models.records import ModelRevision, NewModel, Scope
 from service.models.rules import in_force
 from service.models.store import Models
+from service.pages.courses import changed_courses
 from service.people.dependencies import SEE_OTHER, By, FormLines, FormText, Key, Why
 from service.records.dependencies import ReceptionOf
 from service.records.models import accept_model, withdraw_model
@@ -95,11 +96,15 @@ class EvidenceView:
     residuals: ResidualTable
     gains: tuple[str, ...]
     """Gain of every finding in turn for its sensors, in one sentence."""
+    is_seen: bool
+    """Whether the named causes change what is measured minus simulated."""
     gain: GainView | None
-    """Gain of the named causes; None where no cause is named."""
+    """Gain of the named causes; None where no cause is named, or where it has nothing to show."""
     seen: tuple[SeenCause, ...]
     blind: tuple[BlindCauses, ...]
     notes: tuple[str, ...]
+    changed: tuple[ChartSet, ...]
+    """Histories of the parameters that changed since earlier sessions."""
 
 
 FOLLOW = 3
@@ -124,8 +129,9 @@ class DiagnosisPage:
     """Gain of all named causes, in one sentence."""
 
 
-def diagnosis_page(report: DiagnosisReport) -> DiagnosisPage:
-    """The page of a session's diagnosis, pending or made."""
+def diagnosis_page(report: DiagnosisReport, changed: tuple[ChartSet, ...] = ()) -> DiagnosisPage:
+    """The page of a session's diagnosis, pending or made; ``changed`` are histories of what changed since earlier
+    sessions."""
     made, session = report.diagnosis, report.session
     pending = DiagnosisPage(
         session=session,
@@ -139,10 +145,12 @@ def diagnosis_page(report: DiagnosisReport) -> DiagnosisPage:
         made="",
         gain="",
     )
-    return pending if made is None else _made(pending, report, made)
+    return pending if made is None else _made(pending, report, made, changed)
 
 
-def _made(pending: DiagnosisPage, report: DiagnosisReport, made: StoredDiagnosis) -> DiagnosisPage:
+def _made(
+    pending: DiagnosisPage, report: DiagnosisReport, made: StoredDiagnosis, changed: tuple[ChartSet, ...]
+) -> DiagnosisPage:
     found = made.found
     return replace(
         pending,
@@ -150,7 +158,7 @@ def _made(pending: DiagnosisPage, report: DiagnosisReport, made: StoredDiagnosis
         headline=HEADLINES[made.state] if found is None else headline(found),
         what_to_do=made.summary if found is None else what_to_do(found),
         follow=None,
-        evidence=None if found is None else _evidence(report, made, found),
+        evidence=None if found is None else _evidence(report, made, found, changed),
         made=say("Made by estimator {estimator_version}", estimator_version=made.estimator_version),
         gain=made.gain_in_words,
     )
@@ -163,27 +171,33 @@ def _tone(state: DiagnosisState, found: Diagnosed) -> str:
     return CLAIM if is_held or (state is DiagnosisState.NOTHING and found.noise) else TONES[state]
 
 
-def _evidence(report: DiagnosisReport, made: StoredDiagnosis, found: Diagnosed) -> EvidenceView:
+def _evidence(
+    report: DiagnosisReport, made: StoredDiagnosis, found: Diagnosed, changed: tuple[ChartSet, ...]
+) -> EvidenceView:
     before, after, is_named = found.residuals_before, found.calibration, bool(found.findings)
     places = (*(f.sensors for f in found.findings), *(structure.sensors for structure in found.structures))
     named = [sensor for sensors in places for sensor in sensors]
     verdicts, noise = (report.session.verdict, made.verdict_after), noise_of(before, after)
+    gain = gain_view(found.gain, report.calibration, after, *verdicts) if is_named else None
+    is_seen = is_named and gain is not None and not gain.is_none
     return EvidenceView(
         wrong_errors=errors_of(found) if is_named or found.structures else (),
         findings=_findings(report, found),
         shared=shared_views(weighty_first(found.findings), after),
         structures=tuple(map(_structure, found.structures)),
         courses=course_views(found.structures, before),
-        charts=diagnosis_charts(Sides(after.sensors, before, after.residuals if is_named else None, noise), named),
+        charts=diagnosis_charts(Sides(after.sensors, before, after.residuals if is_seen else None, noise), named),
         bands=bands_in_words(after, noise.times),
         beta=before.beta is not None,
         left_out=max(0, len(after.sensors) - MOST_PANELS),
         residuals=residual_table(replace(after, residuals=before)),
         gains=tuple(gain_in_words(found.gain, f.sensors) for f in found.findings),
-        gain=gain_view(found.gain, report.calibration, after, *verdicts) if is_named else None,
+        is_seen=is_seen,
+        gain=None if gain is None or gain.shows_nothing else gain,
         seen=seen_causes(found.limits, {sensor.kind for sensor in after.sensors}),
         blind=blind_causes(found.limits),
         notes=found.notes,
+        changed=changed,
     )
 
 
@@ -242,7 +256,8 @@ router = APIRouter(include_in_schema=False)
 @router.get("/sessions/{id}/diagnosis")
 def show_diagnosis(request: Request, store: Reading, id: Key, reader: ReaderOf) -> HTMLResponse:
     """Shows the diagnosis of the session."""
-    page = diagnosis_page(diagnosis_report(store, id, reader.read(id, patience=PAGE_PATIENCE)))
+    report = diagnosis_report(store, id, reader.read(id, patience=PAGE_PATIENCE))
+    page = diagnosis_page(report, changed_courses(store, report))
     return render(request, "diagnosis.html", page)
 
 

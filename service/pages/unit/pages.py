@@ -1,7 +1,7 @@
 """The page of one unit: its verdict now, and the basis of it."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import groupby
 
 from estimator.message import capitalised, say
@@ -15,10 +15,11 @@ from service.judging.records import Usable
 from service.judging.temperature_words import covered_in_words
 from service.judging.usable_words import next_in_words
 from service.kit.failure import unit_failed
-from service.kit.measures import NOISE, PARAMETER_NAMES, day_of, in_measure, number
-from service.outlook.charts import ParameterCourse, TrackPoint, history_charts, tracks_of
+from service.kit.measures import NOISE, day_of, in_measure, number
+from service.outlook.charts import ParameterCourse, TrackPoint, history_charts
 from service.outlook.records import UnitOutlook
 from service.outlook.words import NextCalibration, changes_of, next_calibration
+from service.pages.courses import course_chart
 from service.pages.unit.events import KINDS, STEPS, StageTable, UnitEvent, events_of, stage_table
 from service.pages.unit.parameters import ParameterHead, parameter_heads
 from service.pages.unit.remarks import Remarks
@@ -214,7 +215,7 @@ def unit_page(
         why=tuple(_why(usable, report.summary, outlook)),
         measured=_measured(report),
         due=next_in_words(usable) if usable.action and usable.due else "",
-        worst=_course(worst, services, outlook),
+        worst=course_chart(worst, services, outlook) if worst else None,
         shares=share_table(latest, heads),
         failed=unit_failed(report.summary.failed) if report.summary.failed else "",
         parameters=heads,
@@ -252,17 +253,6 @@ def _measured(report: UnitReport) -> str:
     if latest.temperature is not None:
         parts["warm"] = say(", {temperature} °C", temperature=number(latest.temperature, 1))
     return say("Measured {day} on {stand}{warm}." if latest.stand else "Measured {day}{warm}.", **parts)
-
-
-def _course(
-    points: Sequence[HistoryPoint], services: Sequence[Service], outlook: UnitOutlook | None
-) -> ChartSet | None:
-    if not points:
-        return None
-    ((track,),) = tracks_of(points, services)
-    found = history_charts([track], services, (), () if outlook is None else outlook.trends)
-    name = say("{sensor} {parameter}", sensor=track.sensor, parameter=PARAMETER_NAMES[track.parameter])
-    return replace(found, name="worst", panels=(replace(found.panels[0], title=name, condition=None),))
 
 
 def _reference(report: UnitReport) -> str:

@@ -95,7 +95,7 @@ CASES: dict[str, Callable[[Storage], None]] = {
     "no-trend": lambda storage: measure(storage, {1: 0.0}),
     "interval": lambda storage: measure(storage, dict.fromkeys((1, 4, 7, 10), 0.0)),
     "risk": lambda storage: measure(storage, DRIFTS),
-    "may-be-out": lambda storage: measure(storage, {**DRIFTS, 10: 40.0, 11: 46.5}),
+    "may-be-out": lambda storage: measure(storage, {**DRIFTS, 10: 40.0, 11: 47.5}),
     "undecided": undecided,
     "unfit": lambda storage: measure(storage, {1: 0.0, 3: 90.0}),
     "serviced": serviced,
