@@ -189,7 +189,7 @@ CAST = (
             ),
         ),
     ),
-    DemoMember("BA-108", ACCELEROMETER, "stable; the last session was too noisy to decide", 7, noise={-1: 60.0}),
+    DemoMember("BA-108", ACCELEROMETER, "stable; the last session was too noisy to decide", 12, noise={-1: 60.0}),
     DemoMember(
         "BA-109", ACCELEROMETER, "amplifiers of A1 and A4 drifted and were adjusted; measured as found and as left", 9,
         drifts=tuple(

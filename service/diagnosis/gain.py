@@ -61,8 +61,8 @@ class GainView:
 
     @property
     def shows_nothing(self) -> bool:
-        """Whether neither a prediction, nor a parameter, nor the verdict is another with the causes in the model."""
-        return self.is_none and not self.moved and not self.changes_verdict
+        """Whether neither a prediction nor the verdict is another with the causes in the model."""
+        return self.is_none and not self.changes_verdict
 
     @property
     def changes_verdict(self) -> bool:

@@ -68,10 +68,10 @@ def is_change(finding: Finding) -> bool:
 
 
 def _concerned(changes: Sequence[Finding], decisions: tuple[Decision, ...]) -> Iterator[tuple[Finding, Decision]]:
-    """The worst decision on every sensor of the findings; on any sensor for a change of the whole block."""
+    """The worst decision on every sensor that a finding names."""
     for finding in changes:
-        for sensor in finding.sensors or (None,):
-            worst = worst_of(tuple(d for d in decisions if sensor in (None, d.sensor)))
+        for sensor in finding.sensors:
+            worst = worst_of(tuple(decision for decision in decisions if decision.sensor == sensor))
             if worst is not None:
                 yield finding, worst
 
