@@ -20,12 +20,12 @@ from service.opening import open_storage
 from service.papers.sealing import Seal, seal_of
 from service.people.admission import Gate
 from service.people.provider import provider_of
-from service.people.turns import PasswordTurns
 from service.settings import VERSION, Settings
 from service.web import guard
 from service.web.application import Application
 from service.web.headers import HeadAsGet
 from service.web.measured import RequestLog
+from service.web.turns import PasswordTurns, RegisterTurns
 from service.work.job_desk import JobDesk
 from service.work.loop import Worker, summarise_waiting, take_in_waiting, work_in_background
 from service.work.readers import GroupReader, Reader
@@ -82,6 +82,7 @@ def _application(settings: Settings, clock: Callable[[], datetime], optional: di
         Reader: Reader(storage, clock, bell, metrics, k, workers),
         GroupReader: GroupReader(storage, clock, bell, metrics, workers),
         PasswordTurns: PasswordTurns(),
+        RegisterTurns: RegisterTurns(),
         JobDesk: JobDesk(clock, bell, metrics, k, workers),
     }
     seal = seal_of(settings.seal_key_file, settings.seal_password_file)

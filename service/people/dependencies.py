@@ -1,6 +1,5 @@
 """Dependencies of routes: both stores, with the sender's name in the audit trail."""
 
-from collections.abc import AsyncIterator
 from dataclasses import replace
 from typing import Annotated
 
@@ -8,10 +7,10 @@ from fastapi import Depends, Form, Path, Request
 
 from service.kit.person import Person
 from service.people.admission import PersonOf
-from service.people.turns import PasswordTurns
 from service.storage import Storage
 from service.web.application import application_of
 from service.web.fields import LongText, Name, Reason, Sought, Text
+from service.web.turns import password_turn
 
 CREW = "crew"
 """Default name of an uploader without an account."""
@@ -26,12 +25,7 @@ def _acting(storage: Storage, person: Person) -> Storage:
     return replace(storage, database=storage.database.acting(person.account))
 
 
-async def _turn(request: Request) -> AsyncIterator[None]:
-    async with application_of(request).part(PasswordTurns).one():
-        yield
-
-
-PasswordTurn = Annotated[None, Depends(_turn, scope="function")]
+PasswordTurn = Annotated[None, Depends(password_turn, scope="function")]
 """A turn at hashing passwords, before the database is asked; BusyError where too many wait for one."""
 StorageOf = Annotated[Storage, Depends(_storage)]
 """Both stores, for flows that write."""

@@ -8,6 +8,7 @@ from service.people.admission import PersonOf
 from service.people.dependencies import CREW, StorageOf
 from service.records.reception import Reception
 from service.web.application import application_of
+from service.web.turns import register_turn
 
 
 def _reception(request: Request, storage: StorageOf, person: PersonOf) -> Reception:
@@ -16,5 +17,7 @@ def _reception(request: Request, storage: StorageOf, person: PersonOf) -> Recept
     return Reception(storage, k, application.metrics, application.bell.ring, person.signs(CREW), is_dated_later=later)
 
 
+RegisterTurn = Annotated[None, Depends(register_turn, scope="function")]
+"""A turn at entering a register, once it is received; BusyError where too many wait for one."""
 ReceptionOf = Annotated[Reception, Depends(_reception)]
 """Receiver of uploads and of changes of records."""

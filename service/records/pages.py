@@ -24,7 +24,7 @@ from service.records.changes import (
     withdraw_service,
     withdraw_session,
 )
-from service.records.dependencies import ReceptionOf
+from service.records.dependencies import ReceptionOf, RegisterTurn
 from service.records.preview import preview_service
 from service.records.register import Entered, Entering, enter, move_unit
 from service.records.register_api import import_register
@@ -210,7 +210,7 @@ def enter_unit(
 
 
 @router.post("/register/import", response_class=HTMLResponse)
-def import_units(request: Request, sent: SentOf, storage: StorageOf, now: Now) -> HTMLResponse:
+def import_units(request: Request, sent: SentOf, _: RegisterTurn, storage: StorageOf, now: Now) -> HTMLResponse:
     """Enters the units of a table; shows the page again with the result."""
     with storage.database.reading() as store:
         types = tuple(unit_type.name for unit_type in UnitTypes(store).page(0, MOST_TYPES))

@@ -12,6 +12,7 @@ from service.kit.answer import answer
 from service.kit.arriving_files import held
 from service.people.admission import PersonOf
 from service.people.dependencies import StorageOf
+from service.records.dependencies import RegisterTurn
 from service.records.register import Entered, Entering, enter, move_unit
 from service.storage.queries import Store
 from service.units.records import Custody, CustodyStep, Move, NewEntry, Registered
@@ -127,8 +128,8 @@ IMPORTED: Json = {
 }
 
 
-@router.post("/register", responses=errors(400, 413, 422), openapi_extra=IMPORTED)
-def import_all(sent: SentOf, storage: StorageOf, now: Now) -> Entered:
+@router.post("/register", responses=errors(400, 413, 422, 503), openapi_extra=IMPORTED)
+def import_all(sent: SentOf, _: RegisterTurn, storage: StorageOf, now: Now) -> Entered:
     """Enter or change the units of a CSV table. Where a row is wrong, every fault is listed and nothing is stored."""
     return import_register(storage, sent, now)
 

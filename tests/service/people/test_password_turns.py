@@ -11,9 +11,9 @@ import pytest
 
 from service.app import create_app
 from service.people import changes
-from service.people.turns import AT_ONCE, MOST_WAITING
 from service.settings import Settings
 from service.storage import Storage
+from service.web.turns import PasswordTurns
 from tests.databases import all_on_both_engines as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.people.staff import NOW, staffed
 from tests.serving import http_client
@@ -66,7 +66,7 @@ def test_few_are_hashed_at_once_and_everything_else_is_answered(client: httpx.Cl
     with ThreadPoolExecutor(MANY) as pool:
         sent = [pool.submit(attempt, client) for _ in range(MANY)]
         answers = as_completed(sent)
-        refused = [next(answers).result() for _ in range(MANY - AT_ONCE - MOST_WAITING)]
+        refused = [next(answers).result() for _ in range(MANY - PasswordTurns.at_once - PasswordTurns.most_waiting)]
         assert {answer.status_code for answer in refused} == {503}
         assert all(int(answer.headers["Retry-After"]) > 0 for answer in refused)
         slow.begun.wait()
@@ -74,6 +74,6 @@ def test_few_are_hashed_at_once_and_everything_else_is_answered(client: httpx.Cl
             assert client.get(path).status_code == 200
         slow.let.set()
         rest = Counter(answer.result().status_code for answer in answers)
-    assert slow.most == AT_ONCE
-    assert sum(rest.values()) == AT_ONCE + MOST_WAITING
+    assert slow.most == PasswordTurns.at_once
+    assert sum(rest.values()) == PasswordTurns.at_once + PasswordTurns.most_waiting
     assert set(rest) == {401, 429}

@@ -28,6 +28,7 @@ from service.units.records import CustodyStep, Move, NewEntry, Registered
 from service.units.register_file import read_register
 from service.units.store import Register
 from service.uploads.receive import upload
+from service.web.turns import RegisterTurns
 from tests.conftest import Filled, Holding
 from tests.databases import all_on_both_engines as pytest_generate_tests  # noqa: F401 - the hook
 from tests.databases import one_engine
@@ -203,6 +204,21 @@ def test_others_write_while_a_long_list_is_entered(http: httpx.Client) -> None:
             written += http.post("/api/v1/units/BA-017/notes", json=note).status_code == 201
     assert sent.result().json() == {"new": 500, "changed": 0, "unchanged": 0}
     assert written > 2
+
+
+def test_of_many_registers_at_once_some_wait_and_the_rest_come_again(http: httpx.Client) -> None:
+    def send(number: int) -> httpx.Response:
+        rows = "\n".join(f"S-{number}-{n},T" for n in range(8 * PIECE))
+        form = {"files": {"file": ("units.csv", f"serial,unit_type\n{rows}")}, "data": {"by": "K. Ito"}}
+        return http.post("/api/v1/register", **form)
+
+    together = RegisterTurns.at_once + RegisterTurns.most_waiting
+    with ThreadPoolExecutor(3 * together) as pool:
+        answers = list(pool.map(send, range(3 * together)))
+    refused = [answer for answer in answers if answer.status_code == 503]
+    assert all(int(answer.headers["Retry-After"]) > 0 for answer in refused)
+    assert 0 < len(refused) <= 2 * together
+    assert {answer.status_code for answer in answers if answer not in refused} == {200}
 
 
 def test_a_list_that_somebody_makes_wrong_meanwhile_says_what_is_entered(
