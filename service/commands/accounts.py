@@ -58,30 +58,6 @@ def add_user(
         _print_link(settings, made.login, make_link(storage, made.login, _now(), WHO))
 
 
-@user.command("link")
-def link_user(login: Login, database_url: DatabaseUrl = None, data_folder: DataFolder = None) -> None:
-    """Print a link with which the account's owner chooses another password, once, within an hour."""
-    settings = settings_from(database_url=database_url, data_folder=data_folder)
-    with _opened(settings) as storage:
-        _print_link(settings, login, make_link(storage, login, _now(), WHO))
-
-
-@user.command("connect")
-def connect_user(
-    login: Login,
-    subject: Annotated[str, typer.Argument(metavar="SUBJECT", help="As the provider knows them.", show_default=False)],
-    database_url: DatabaseUrl = None,
-    data_folder: DataFolder = None,
-) -> None:
-    """Connect an account with somebody at the provider that is set, so that they sign in to it there."""
-    settings = settings_from(database_url=database_url, data_folder=data_folder)
-    if not settings.oidc_issuer:
-        raise ConflictError("No provider is set: IMU_HEALTH_OIDC_ISSUER.")
-    with _opened(settings) as storage:
-        account = connect(storage, login, settings.oidc_issuer, subject, _now(), who=WHO)
-    screen().print(f"[bold]{escape(account.login)}[/] signs in at {escape(settings.oidc_issuer)}.")
-
-
 @user.command("change")
 def change_user(
     login: Login,
@@ -90,22 +66,43 @@ def change_user(
     active: Annotated[
         bool | None, typer.Option("--active/--inactive", help="Whether they may sign in.", show_default="as it is")
     ] = None,
+    subject: Annotated[
+        str, typer.Option(help="As the provider knows them: they sign in there.", show_default="as it is")
+    ] = "",
+    link: Annotated[bool, typer.Option("--link", help="Print a link to choose another password, once.")] = False,
     database_url: DatabaseUrl = None,
     data_folder: DataFolder = None,
 ) -> None:
-    """Give an account another role or name, or keep its owner out. Accounts are never deleted."""
-    with _opened(settings_from(database_url=database_url, data_folder=data_folder)) as storage:
+    """Give an account another role, name or password, or keep its owner out. Accounts are never deleted."""
+    settings = settings_from(database_url=database_url, data_folder=data_folder)
+    if subject and not settings.oidc_issuer:
+        raise ConflictError("No provider is set: IMU_HEALTH_OIDC_ISSUER.")
+    with _opened(settings) as storage:
         found = change_account(storage, login, AccountChange(name, role, active), _now(), who=WHO)
+        if subject:
+            connect(storage, login, settings.oidc_issuer, subject, _now(), who=WHO)
+        if link:
+            _print_link(settings, login, make_link(storage, login, _now(), WHO))
+            return
     state = "may sign in" if found.is_active else "may not sign in"
-    screen().print(f"[bold]{escape(found.login)}[/]  {escape(found.name)}  {found.role}  {state}")
+    there = f" at {escape(settings.oidc_issuer)}" if subject else ""
+    screen().print(f"[bold]{escape(found.login)}[/]  {escape(found.name)}  {found.role}  {state}{there}")
 
 
 @user.command("list")
-def list_users(database_url: DatabaseUrl = None, data_folder: DataFolder = None, as_json: AsLines = None) -> None:
+def list_users(
+    tokens: Annotated[bool, typer.Option("--tokens", help="Their tokens instead; secrets are not kept.")] = False,
+    database_url: DatabaseUrl = None,
+    data_folder: DataFolder = None,
+    as_json: AsLines = None,
+) -> None:
     """Print every account."""
     with _read(settings_from(database_url=database_url, data_folder=data_folder)) as store:
-        accounts = Accounts(store).every()
-    ListOutput.of(as_json).show(rows_of(accounts), lambda: _accounts(accounts))
+        accounts, every = Accounts(store).every(), Tokens(store).every()
+    if tokens:
+        ListOutput.of(as_json).show(rows_of(every), lambda: _tokens(every))
+    else:
+        ListOutput.of(as_json).show(rows_of(accounts), lambda: _accounts(accounts))
 
 
 def _accounts(accounts: Sequence[Account]) -> Table:
@@ -144,14 +141,6 @@ def take_token(
     with _opened(settings_from(database_url=database_url, data_folder=data_folder)) as storage:
         found = revoke_token(storage, id, EVERYBODY, _now(), who=WHO)
     screen().print(f"Token {found.id} of [bold]{escape(found.login)}[/], {escape(found.label)}, is revoked.")
-
-
-@token.command("list")
-def list_tokens(database_url: DatabaseUrl = None, data_folder: DataFolder = None, as_json: AsLines = None) -> None:
-    """Print every token; secrets are not kept."""
-    with _read(settings_from(database_url=database_url, data_folder=data_folder)) as store:
-        tokens = Tokens(store).every()
-    ListOutput.of(as_json).show(rows_of(tokens), lambda: _tokens(tokens))
 
 
 def _tokens(tokens: Sequence[Token]) -> Table:

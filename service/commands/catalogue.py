@@ -19,10 +19,6 @@ class CommandEntry:
 
 CATALOGUE = {
     "serve": CommandEntry("serve.serve", "Start the service: schema brought up to date, pages and API on one address."),
-    "fill": CommandEntry(
-        "fill.fill",
-        "Fill an empty database with a large fleet of simulated units: sessions of three years, custody, retirement.",
-    ),
     "calibrate": CommandEntry(
         "calibrate.calibrate_files",
         "Calibrate session files: scale factor, bias, quadratic term and axis of every sensor, with uncertainties.",
@@ -86,7 +82,7 @@ CATALOGUE = {
     "db": CommandEntry("database.database", "Bring the database's schema up or down."),
     "backup": CommandEntry(
         "database.backup",
-        "Write all that is stored into one file, while the service runs: `imu-health backup FILE`.",
+        "Write all that is stored into one file, while the service runs; it is there whole or not at all.",
     ),
     "restore": CommandEntry(
         "database.restore_backup",

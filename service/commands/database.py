@@ -3,10 +3,9 @@
 import sys
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
-from typer.core import TyperGroup
 
 from estimator.wording import counted
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
@@ -27,33 +26,38 @@ database = typer.Typer(
 )
 
 
+@database.callback()
+def _group() -> None:
+    """Bring the database's schema up or down."""
+
+
 @database.command("upgrade")
-def upgrade_schema(database_url: DatabaseUrl = None, data_folder: DataFolder = None) -> None:
-    """Bring the schema up to what this version needs; safe to run again."""
-    settings = settings_from(database_url=database_url, data_folder=data_folder)
-    upgrade(settings.database)
-    typer.echo("The schema is at head.")
-
-
-@database.command("downgrade", context_settings={"ignore_unknown_options": True})
-def downgrade_schema(
-    revision: Annotated[str, typer.Argument(help="Revision to go down to, for instance -1 or base.")],
+def upgrade_schema(
     database_url: DatabaseUrl = None,
     data_folder: DataFolder = None,
+    back_to: Annotated[
+        str, typer.Option(metavar="REVISION", help="Go back to an earlier one instead.", show_default=False)
+    ] = "",
     yes: Annotated[bool, typer.Option("--yes", help="Do not ask; needed where nobody can answer.")] = False,
     no_backup: Annotated[bool, typer.Option("--no-backup", help="Write no backup into the data folder first.")] = False,
 ) -> None:
-    """Take the schema back to an earlier revision; says what will be deleted, asks, and writes a backup first."""
+    """Bring the schema up to what this version needs; safe to run again. --back-to says what will be deleted, asks, and
+    writes a backup first.
+    """
     settings = settings_from(database_url=database_url, data_folder=data_folder)
-    expected_losses = losses(settings.database, revision)
+    if not back_to:
+        upgrade(settings.database)
+        typer.echo("The schema is at head.")
+        return
+    expected_losses = losses(settings.database, back_to)
     for loss in expected_losses:
         say(_lost_rows(loss))
     if expected_losses and not yes:
         _confirm()
     if expected_losses and not no_backup:
         _write_backup(settings)
-    downgrade(settings.database, revision)
-    typer.echo(f"The schema is at {revision}.")
+    downgrade(settings.database, back_to)
+    typer.echo(f"The schema is at {back_to}.")
 
 
 def _confirm() -> None:
@@ -80,28 +84,19 @@ def _lost_rows(loss: Loss) -> str:
 File = Annotated[Path, typer.Argument(metavar="FILE", help="The backup.", show_default=False)]
 
 
-class WritesByDefault(TyperGroup):
-    """`backup FILE` is `backup write FILE`."""
-
-    def parse_args(self, ctx: Any, args: list[str]) -> Any:
-        """Parses arguments whose first word is a command, or the file to write."""
-        if args and args[0] != "--help" and args[0] not in self.commands:
-            args = ["write", *args]
-        return super().parse_args(ctx, args)
-
-
-backup = typer.Typer(
-    name="backup",
-    cls=WritesByDefault,
-    add_completion=False,
-    no_args_is_help=True,
-    help="Write all that is stored into one file, while the service runs: `imu-health backup FILE`.",
-)
-
-
-@backup.command("write")
-def write(file: File, database_url: DatabaseUrl = None, data_folder: DataFolder = None) -> None:
-    """Write database and uploaded files into one file; it is there whole or not at all. The same as `backup FILE`."""
+def backup(
+    file: File,
+    check: Annotated[
+        bool, typer.Option("--check", help="Read one that is there, and compare it with its hashes.")
+    ] = False,
+    database_url: DatabaseUrl = None,
+    data_folder: DataFolder = None,
+) -> None:
+    """Write all that is stored into one file, while the service runs; it is there whole or not at all."""
+    if check:
+        manifest = verified(file)
+        typer.echo(f"{file} is whole: {_contents(manifest)}, made {manifest.made_at:%Y-%m-%d %H:%M} UTC.")
+        return
     settings = settings_from(database_url=database_url, data_folder=data_folder)
     manifest = write_backup(settings.database, Files(settings.files), file, datetime.now(UTC))
     typer.echo(f"{file}: {_contents(manifest)}.")
@@ -109,13 +104,6 @@ def write(file: File, database_url: DatabaseUrl = None, data_folder: DataFolder 
         lost, is_one = counted(len(manifest.lost), "uploaded file"), len(manifest.lost) == 1
         say(f"{lost} {'is' if is_one else 'are'} missing or damaged and not in it: {', '.join(manifest.lost)}.")
         raise typer.Exit(FAILED)
-
-
-@backup.command("verify")
-def verify(file: File) -> None:
-    """Read a backup from end to end and compare every part with its hash."""
-    manifest = verified(file)
-    typer.echo(f"{file} is whole: {_contents(manifest)}, made {manifest.made_at:%Y-%m-%d %H:%M} UTC.")
 
 
 def restore_backup(
@@ -157,7 +145,7 @@ def _report_access(access: RevokedAccess) -> None:
     elif access.tokens:
         say(
             f"{counted(access.tokens, 'token')} {'holds' if access.tokens == 1 else 'hold'} again, revoked since the "
-            "backup or not: look at `imu-health token list`. --revoke-tokens would have revoked them all."
+            "backup or not: look at `imu-health user list --tokens`. --revoke-tokens would have revoked them all."
         )
 
 

@@ -8,7 +8,6 @@ from collections.abc import Iterator
 PROGRAM = "imu-health"
 LINES = """
 serve --demo  # a fleet of simulated units to look at
-fill --units 1000 --data-folder large  # a large fleet to try, then: serve --data-folder large
 serve --data-folder my-units --port 8080  # your own, on another port
 calibrate session.json  # every sensor's parameters with their uncertainties
 calibrate sessions/*.json --json  # one object a line, for a program
@@ -39,20 +38,19 @@ parity flight.json --reference session.json  # which sensor has drifted since
 recalibrate BA-017  # its sessions under the model in force
 recalibrate --all --workers 4  # every session that another model concerns since
 user add k.ito --role admin --name "K. Ito"  # prints the link for a password
-user link k.ito  # another password
-user connect k.ito 8f3a2c  # the same person at the provider
+user change k.ito --link  # another password
+user change k.ito --subject 8f3a2c  # the same person at the provider
 user change k.ito --role engineer  # another role
 user change k.ito --inactive  # may not sign in any more
 user list  # every account
+user list --tokens  # what tokens are for, until when, last used
 token add bench-3 --role crew --label "bench 3"  # prints the secret, once
 token revoke 2  # lets nobody in any more
-token list  # what they are for, until when, last used
 doctor  # before you ask somebody
 db upgrade  # the schema of this version
-db downgrade 0011  # says first what would be lost, and asks
+db upgrade --back-to 0011  # says first what would be lost, and asks
 backup /backups/today.backup  # while the service runs
-backup write /backups/today.backup  # the same, said in full
-backup verify /backups/today.backup  # whether it can be restored
+backup /backups/today.backup --check  # whether it can be restored
 restore /backups/today.backup --data-folder /data  # into an empty database
 """
 

@@ -72,7 +72,7 @@ def same_of_the_backup(world: World, databases: Databases, folder: Path) -> None
     before, restored = state(world), Service(url, folder / "restored")
     steps = (
         ("backup", str(file), *world.service.where),
-        ("backup", "verify", str(file)),
+        ("backup", str(file), "--check"),
         ("restore", str(file), *restored.where),
     )
     for arguments in steps:

@@ -50,7 +50,7 @@ def test_a_token_opens_the_service_for_commands(
     own = ("--database-url", settings.database)
     run("user", "add", "bench", "--role", "admin", *own)
     secret = run("token", "add", "bench", "--role", "viewer", "--label", "bench 3", *own).out.strip()
-    assert secret not in run("token", "list", *own).out
+    assert secret not in run("user", "list", "--tokens", *own).out
     with serving(settings) as address:
         assert "Sign in first" in run("fleet", "--server", address).err
         monkeypatch.setenv("IMU_HEALTH_TOKEN", secret)

@@ -78,8 +78,8 @@ def test_db_upgrade_and_downgrade(run: Run, databases: Databases) -> None:
     ready = open_database(url)
     ready.require_ready()
     ready.close()
-    assert run("db", "downgrade", "-1", "--database-url", url).code == 0
-    assert run("db", "downgrade", "base", "--database-url", url).code == 0
+    assert run("db", "upgrade", "--back-to", "-1", "--database-url", url).code == 0
+    assert run("db", "upgrade", "--back-to", "base", "--database-url", url).code == 0
     assert run("db", "upgrade", "--database-url", url).code == 0
 
 
