@@ -1,5 +1,6 @@
 """Step: uploaded bytes → a session that can be calibrated and stored; every fault is named with its place."""
 
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
@@ -86,9 +87,10 @@ def _measured_at(session: CalibrationSession, now: datetime) -> datetime:
 
 
 def _described(session: CalibrationSession) -> str:
-    """``accelerometer × 6, V``."""
+    """``accelerometer × 6, V``; of several kinds each with its number."""
     units = sorted({sensor.reading_unit for sensor in session.sensors})
-    return f"{session.block} × {len(session.sensors)}, {' and '.join(units)}"[:LONGEST_NAME]
+    kinds = sorted(Counter(sensor.kind for sensor in session.sensors).items())
+    return f"{', '.join(f'{kind} × {number}' for kind, number in kinds)}, {' and '.join(units)}"[:LONGEST_NAME]
 
 
 def _text_problems(session: CalibrationSession) -> list[Problem]:

@@ -45,6 +45,7 @@ from service.storage import Storage
 from service.storage.audit import Audit
 from service.storage.files import content_hash
 from service.storage.queries import Store
+from service.types.design import of_its_design
 from service.types.rules import type_of
 from service.types.store import UnitTypes
 from service.units.store import Register, Units
@@ -180,7 +181,9 @@ def _checked(storage: Storage, content: Content, received: Received) -> Checked:
         with storage.database.reading() as store:
             return Units(store).exists(serial)
 
-    return check(where(content), received.filename, received.at, is_known)
+    checked = check(where(content), received.filename, received.at, is_known)
+    with storage.database.reading() as store:
+        return of_its_design(store, checked)
 
 
 def _calibrated(storage: Storage, checked: Checked) -> Calibrated:
