@@ -15,6 +15,8 @@ _GROUPS = {"unit": UnitRow.id, "type": UnitRow.unit_type_id, "stand": SessionRow
 
 def of_demonstration(session: Session, kind: WorkKind, keys: Collection[str]) -> frozenset[str]:
     """Those of some pieces of work that are about nothing but units of the demonstration."""
+    if not has_demonstration(session):
+        return frozenset()
     if kind is WorkKind.DIAGNOSIS:
         query = select(SessionRow.id).join(UnitRow, UnitRow.id == SessionRow.unit_id).where(SessionRow.id.in_(keys))
         return frozenset(session.scalars(query.where(UnitRow.is_demonstration)))
@@ -24,6 +26,17 @@ def of_demonstration(session: Session, kind: WorkKind, keys: Collection[str]) ->
     if kind in (WorkKind.GROUP, WorkKind.SUMMARY):
         return frozenset(key for key in keys if _has_no_other(session, key))
     return frozenset()
+
+
+ASKED = "has_demonstration"
+"""Name under which a transaction keeps whether any unit is of the demonstration."""
+
+
+def has_demonstration(session: Session) -> bool:
+    """Whether any unit is of the demonstration."""
+    if ASKED not in session.info:
+        session.info[ASKED] = session.scalar(select(UnitRow.id).where(UnitRow.is_demonstration).limit(1)) is not None
+    return bool(session.info[ASKED])
 
 
 def _has_no_other(session: Session, place: str) -> bool:

@@ -22,7 +22,7 @@ SAME_DESIGN = 1.2
 
 def of_its_design(store: Store, new: Checked) -> Checked:
     """The session with the name of its type; of a unit with a type, or a file that names one, as it is."""
-    if new.session.unit_type is not None or Units(store).find(new.session.unit) is not None:
+    if new.session.unit_type is not None or Units(store).is_simulated(new.session.unit) is not None:
         return new
     for name in _names(new):
         known = UnitTypes(store).find(name)

@@ -8,6 +8,7 @@ from sqlalchemy import Select, exists, select, update
 
 from service.errors import NotFoundError
 from service.kit.copying import copied
+from service.queue.subjects_store import ASKED, has_demonstration
 from service.sessions.states import RecordState
 from service.sessions.states_store import IS_ACCEPTED, IS_BREAK
 from service.sessions.tables import SessionRow
@@ -90,11 +91,14 @@ class Units(Queries):
         first = unmeasured.values(unit_type_id=type_id, simulated=simulated, is_demonstration=is_demonstration)
         self._session.execute(first)
         self._session.info.pop(("simulated", serial), None)
+        self._session.info.pop(ASKED, None)
 
     def set_own(self, serial: str) -> None:
         """Records that somebody uploads a session of a unit, which is not of the demonstration alone any more."""
-        statement = update(UnitRow).where(UnitRow.serial == serial, UnitRow.is_demonstration)
-        self._session.execute(statement.values(is_demonstration=False))
+        if has_demonstration(self._session):
+            statement = update(UnitRow).where(UnitRow.serial == serial, UnitRow.is_demonstration)
+            self._session.execute(statement.values(is_demonstration=False))
+            self._session.info.pop(ASKED)
 
     def held(self, serial: str) -> int | None:
         """The key of a unit that is there, with the unit held until the transaction ends: its sessions are judged one

@@ -181,9 +181,7 @@ def _checked(storage: Storage, content: Content, received: Received) -> Checked:
         with storage.database.reading() as store:
             return Units(store).exists(serial)
 
-    checked = check(where(content), received.filename, received.at, is_known)
-    with storage.database.reading() as store:
-        return of_its_design(store, checked)
+    return check(where(content), received.filename, received.at, is_known)
 
 
 def _calibrated(storage: Storage, checked: Checked) -> Calibrated:
@@ -191,8 +189,9 @@ def _calibrated(storage: Storage, checked: Checked) -> Calibrated:
     simulated and its unit is not."""
     with storage.database.reading() as store:
         require_one_origin(store, checked.session)
-        basis = basis_of(store, checked, model_for(store, checked))
-    return calibrate(checked, basis)
+        new = of_its_design(store, checked)
+        basis = basis_of(store, new, model_for(store, new))
+    return calibrate(new, basis)
 
 
 @dataclass(frozen=True, eq=False)
