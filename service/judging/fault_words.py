@@ -128,4 +128,7 @@ def said_of(faults: tuple[ServiceFault, ...]) -> str:
 
 def remedy_in(reason: str) -> str:
     """The remedy in the reason of a verdict; empty where it states none."""
-    return reason.parts.get("remedy", "") if isinstance(reason, Message) else ""
+    if not isinstance(reason, Message):
+        return ""
+    inside = (remedy_in(part) for part in reason.parts.values())
+    return reason.parts.get("remedy") or next(filter(None, inside), "")

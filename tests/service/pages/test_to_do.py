@@ -44,5 +44,6 @@ def test_a_unit_that_must_not_be_used_is_listed_without_a_flag_too(settings_hold
     with http_client(create_app(settings)) as http:
         unit = http.get("/api/v1/units").json()["units"][0]
         assert (unit["usable"], unit["flags"]) == (False, 0)
+        assert unit["use"] == "Do not use: measure more positions or average longer"
         page = http.get("/flags").text
         assert f"{unit['use']}. " in page
