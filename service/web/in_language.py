@@ -23,10 +23,11 @@ class TemplateLanguage:
         return self._filled(sentence if self._catalogue is None else self._catalogue.form(sentence), values)
 
     def ngettext(self, singular: str, plural: str, number: int | str, /, **values: Any) -> Markup:
-        """A sentence about a number of things."""
+        """A sentence about a number of things, which may be written with commas between thousands."""
+        count = int(str(number).replace(",", ""))
         if self._catalogue is None:
-            return self._filled(singular if int(number) == 1 else plural, values)
-        return self._filled(self._catalogue.form(singular, int(number)), values)
+            return self._filled(singular if count == 1 else plural, values)
+        return self._filled(self._catalogue.form(singular, count), values)
 
     def say(self, value: Any) -> Any:
         """A value of a page in the language; markup and numbers are unchanged."""

@@ -15,6 +15,12 @@ LABELS = {
     "position": "position", "direction_x": "direction x", "direction_y": "direction y", "direction_z": "direction z",
 }  # fmt: skip
 """Names of columns on this page."""
+KINDS_CALLED = {
+    "accelerometer": "accelerometer", "gyroscope": "gyroscope", "temperature": "temperature", "time": "time",
+    "angle": "angle or rate of a stand", "run": "run", "position": "position", "direction": "direction",
+    "quality": "quality of a reading", "ignored": "left out",
+}  # fmt: skip
+"""Names of kinds of columns on this page."""
 FACTS = (
     ("fact.operator", "Operator", "operator"), ("fact.notes", "Notes", "notes"),
 )  # fmt: skip
