@@ -1,7 +1,8 @@
 """Tables of custom layout: previewed, recognised, mapped by hand where needed, and read as a session.
 
 envelope    the uploaded bytes and their mapping in one file: what is stored
-decoding    bytes of text → text            grids    any table → cells, headings
+decoding    bytes of text → text            cutting  text → rows
+grids       any table → cells, headings
 titles      rows above a table → facts      vocabulary, senses   words of headings, in four languages
 evidence    what values say                 triads, understand   headings and values → columns of a mapping
 kinds       kinds of columns                facts    columns and values → facts of a session

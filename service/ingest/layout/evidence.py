@@ -23,8 +23,8 @@ STEADY = 0.1
 CALM_BLOCKS = 40
 """Blocks of rows of which the calmer half are taken for rests."""
 LONGEST_BLOCK = 50
-SPAN = 10
-"""Rows whose turn is looked at as one: 0.1 s at 100 Hz."""
+SPANS = (10, 20, 40, 80)
+"""Rows whose turn is looked at as one, 0.1 to 0.8 s at 100 Hz: longer ones average noise and shaking hands."""
 LEAST_TURN, MOST_TURN = 0.005, 0.7
 """rad in a span: less is noise, more is not small."""
 FEWEST_TURNS = 12
@@ -102,7 +102,7 @@ def sample_rate(seconds: Array) -> float | None:
     if rate is not None or len(seconds) < SAMPLES or span <= 0:
         return rate
     mean = (len(seconds) - 1) / span
-    return float(f"{mean:.3g}") if np.all(np.diff(seconds) >= 0) and mean > 1 and mean * step < SPAN else None
+    return float(f"{mean:.3g}") if np.all(np.diff(seconds) >= 0) and mean > 1 and mean * step < SPANS[0] else None
 
 
 @dataclass(frozen=True)
@@ -123,9 +123,14 @@ class TurnFactors:
 
 def turns_of(accelerometers: Array, gyros: Array) -> TurnFactors | None:
     """The regression of two triads (n, 3); None where there are too few turns, or the gyros do not explain them."""
-    rows = len(accelerometers) // SPAN * SPAN
-    felt = accelerometers[:rows].reshape(-1, SPAN, 3).mean(axis=1)
-    turned = gyros[:rows].reshape(-1, SPAN, 3).mean(axis=1) * SPAN
+    found = [turns for span in SPANS if (turns := _turns_over(accelerometers, gyros, span)) is not None]
+    return max(found, key=lambda turns: turns.explained, default=None)
+
+
+def _turns_over(accelerometers: Array, gyros: Array, span: int) -> TurnFactors | None:
+    rows = len(accelerometers) // span * span
+    felt = accelerometers[:rows].reshape(-1, span, 3).mean(axis=1)
+    turned = gyros[:rows].reshape(-1, span, 3).mean(axis=1) * span
     lengths = np.linalg.norm(felt, axis=1)
     if not rows or not np.isfinite(felt).all() or not np.isfinite(turned).all() or lengths.min() == 0:
         return None

@@ -13,6 +13,7 @@ from estimator.screening.clock import MOST_POSITIONS, SAMPLES
 from estimator.session import ACCELEROMETER, GYROSCOPE
 from service.ingest.layout.evidence import (
     GRAVITIES,
+    RATE_UNITS,
     Array,
     TurnFactors,
     clock_unit,
@@ -221,6 +222,7 @@ def questions(session: Mapping[str, Any], table: Rows) -> tuple[Problem, ...]:
         if kind in QUANTITY and quantity in QUANTITY.values() and quantity != QUANTITY[kind]:
             text = say("is {unit}, which no {kind} reads in; correct the kind or the unit", unit=unit, kind=kind)
             problems.append(Problem(f"sensors[{number}].reading_unit", text))
+    problems += _contradicted(session, sensors, table)
     if session.get("programme") != ORIENTATIONS or not table.is_log([str(s.get("name")) for s in sensors]):
         return tuple(problems)
     if table.asks_unit_of_time():
@@ -233,6 +235,20 @@ def questions(session: Mapping[str, Any], table: Rows) -> tuple[Problem, ...]:
         text = say("missing; the rows follow one another as the samples of a raw log do")
         problems.append(Problem("sample_rate_hz", text))
     return tuple(problems)
+
+
+def _contradicted(session: Mapping[str, Any], sensors: Sequence[Mapping[str, Any]], table: Rows) -> Iterator[Problem]:
+    """Units of gyros that the turns between rests contradict, many times over."""
+    by_kind, rate = _by_kind(sensors, session), session.get("sample_rate_hz")
+    felt, turned = map(table.triad, by_kind.values())
+    turns = None if felt is None or turned is None else turns_of(felt, turned)
+    found = turns.unit(float(rate)) if turns is not None and isinstance(rate, int | float) else ""
+    for number, sensor in enumerate(sensors, start=1):
+        name, unit = str(sensor.get("name")), str(sensor.get("reading_unit") or "")
+        stated = plain_label(str(table.columns.get(name, {}).get("unit") or unit))
+        if found and sensor in by_kind[GYROSCOPE] and stated != found and stated in RATE_UNITS:
+            text = say("is {unit}, but by the turns between rests it is {found}", unit=stated, found=found)
+            yield Problem(f"sensors[{number}].reading_unit", text)
 
 
 def told_by_rate(session: Mapping[str, Any], table: Rows) -> Iterator[str]:

@@ -9,8 +9,9 @@ from estimator.json_object import Json
 from estimator.message import say
 from service.ingest import hdf5, mat, parquet
 from service.ingest.formats import HDF5, LOGS, MAT, PARQUET, XLSX
+from service.ingest.layout.cutting import Cell
 from service.ingest.layout.envelope import is_wrapped, unwrapped
-from service.ingest.layout.grids import Cell, Grid, grid_of, is_nothing, number_of
+from service.ingest.layout.grids import Grid, grid_of, is_nothing, number_of
 from service.ingest.layout.mapping import layout_of
 from service.ingest.layout.reading import seconds_of, word_text
 from service.ingest.xlsx import session_sheets, sheet_names
@@ -45,7 +46,7 @@ def is_session(content: bytes, filename: str) -> bool:
     if content.startswith(HDF5):
         return hdf5.has_metadata(content, filename)
     if content.startswith(MAT):
-        return mat.VARIABLE in mat.variables(content, filename, most_rows=1)
+        return mat.has_metadata(content, filename)
     head = content[:4096].lstrip(b"\xef\xbb\xbf \t\r\n")
     return not head or head[:1] in b"{[" or (head[:1] == b"#" and head.lstrip(b"# \t")[:1] == b"{")
 

@@ -11,7 +11,8 @@ from estimator.message import joined, say
 from estimator.reading.problems import Where, shown
 from estimator.screening import JUDGED_BY_PARITY, Screening, declined_by
 from estimator.session import IN_SERVICE
-from service.ingest.layout.grids import Cell, Grid, grid_of, is_nothing, number_of
+from service.ingest.layout.cutting import Cell
+from service.ingest.layout.grids import Grid, grid_of, is_nothing, number_of
 from service.ingest.layout.mapping import ColumnMapping, Layout
 from service.ingest.layout.vocabulary import conversion, target_label
 

@@ -15,6 +15,8 @@ FUSED = {
     for kind, words in SHORT.items()
 }
 """``ax``, ``wz``, ``gfx``: kind and axis in one word."""
+NAMED_AXES = {"roll": "x", "pitch": "y", "yaw": "z", "longitudinal": "x", "lateral": "y", "vertical": "z"}
+"""Names of axes of a quantity with a unit of acceleration or rate; of another one they are angles and places."""
 QUANTITIES = {"acceleration": "accelerometer", "rate": "gyroscope"}
 SHORTEST_WORD = 3
 """Letters of a word that means the same anywhere in a heading."""
@@ -57,7 +59,10 @@ def sense_of(name: str, unit: str) -> Sense | None:
     """The sensor that a heading without its unit names; None where it names none."""
     words = words_of(name)
     quantity = getattr(unit_of(unit), "quantity", None) if unit else None
-    if not words or is_of_another_thing(name) or quantity not in (None, *QUANTITIES, "count", "voltage", "current"):
+    if quantity in QUANTITIES:
+        words = [NAMED_AXES.get(word, word) for word in words]
+    is_another = is_of_another_thing(" ".join(words))
+    if not words or is_another or quantity not in (None, *QUANTITIES, "count", "voltage", "current"):
         return None
     fused = _fused(name)
     place, group = (fused[1], fused[2]) if fused else _place(words)

@@ -31,6 +31,8 @@ SPREADSHEET_DAYS = range(30_000, 80_000)
 """Numbers that a date cell has: days since the end of 1899."""
 LONGEST = 100
 """Characters of a title that is looked at."""
+RATE_NAMES = ("fs", "rate", "samplerate", "sample_rate", "sampling_rate", "samplingrate", "sample_rate_hz", "frequency")
+"""Names of a variable that holds the samples a second."""
 LONGEST_RATE = 300
 """Characters of a row in which a sample rate is looked for."""
 RATE = re.compile(
@@ -59,6 +61,8 @@ def stated_in(rows: Sequence[Sequence[str | float | None]]) -> Json:
 
 def _rate(row: Sequence[str | float | None]) -> float | None:
     """The samples a second that a row states."""
+    if len(row) == 2 and isinstance(row[0], str) and isinstance(row[1], float | int) and row[0].lower() in RATE_NAMES:
+        return float(row[1]) or None
     match = RATE.search(" ".join(str(cell) for cell in row if cell is not None)[:LONGEST_RATE])
     if match is None:
         return None

@@ -26,6 +26,8 @@ from service.ingest.layout.vocabulary import LETTERS, conversion, unit_of
 AXES = 3
 SAME = 0.999
 """Correlation of the axes of two triads from which they are one, written twice: raw and calibrated, say."""
+FREED_WORDS = ("lin", "user", "dyn")
+"""Beginnings of words for accelerations without gravity, where values do not show it."""
 FREED = 0.5
 """Share of gravity below which the usual length of a triad is without it."""
 
@@ -69,7 +71,7 @@ def found_in(
     """Sensors by place; None of what is called one and is none. ``table``: what the table is called."""
     groups: dict[tuple[str | None, tuple[str, ...], str], dict[int, Sense]] = {}
     for k, sense in senses.items():
-        groups.setdefault((sense.kind, sense.group, sense.unit), {})[k] = sense
+        groups.setdefault((sense.kind, sense.group if sense.place else (), sense.unit), {})[k] = sense
     triads = [_told(SensorTriad(kind, group, unit), values, table) for (kind, _, unit), group in groups.items()]
     found: dict[int, FoundSensor | None] = dict.fromkeys(senses)
     for kind in LETTERS:
@@ -116,14 +118,17 @@ def _told(triad: SensorTriad, values: Mapping[int, Array | None], table: str) ->
     if measure is None:
         whole = bool(np.all(readings == np.round(readings)))
         length = gravity_at_rest(readings)
+        words = next(iter(triad.senses.values())).group
+        if length is None and any(word.startswith(FREED_WORDS) for word in words):
+            return SensorTriad(None, triad.senses)
         return SensorTriad(triad.kind, triad.senses, gravity_unit(length) or ("count" if whole and length else ""))
     if measure.quantity != "acceleration":
         return triad
     times, over, _ = conversion(triad.unit, "g") or (1.0, 1.0, 0.0)
     usual = float(np.nanmedian(np.linalg.norm(readings, axis=1))) * times / over
-    if usual < FREED:
-        return SensorTriad(None, triad.senses, triad.unit)
     length = gravity_at_rest(readings)
+    if usual < FREED and not gravity_unit(length):
+        return SensorTriad(None, triad.senses, triad.unit)
     is_right = length is None or is_like_gravity(length * times / over, GRAVITIES["g"])
     return triad if is_right else SensorTriad(triad.kind, triad.senses)
 

@@ -38,7 +38,7 @@ MOST_FIELDS = 5000
 """Most fields of the form: two for each of 300 columns, a few for each sensor."""
 INFLATION = 1.4
 """Growth of bytes encoded as text: 4/3, and the form around them."""
-CHOSEN = ("sheet", "encoding", "separator", "decimal", "header_row", "first_row")
+CHOSEN = ("sheet", "encoding", "separator", "record", "decimal", "header_row", "first_row")
 """Settings of the parser that can be chosen."""
 TEXTS = ("unit", "unit_type", "operator", "notes", "programme", "block", "stand.id")
 NUMBERS = (

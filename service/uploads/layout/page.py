@@ -25,7 +25,7 @@ UNITS = (
     "V", "mV", "µV", "mA", "µA", "count", "pulse", "m/s²", "g", "mg", "rad/s", "°/s", "mdeg/s", "°/h", "deg", "rad",
     "arcmin", "arcsec", "s", "ms", "µs", "ns", "min", "h", "°C", "K", "°F",
 )  # fmt: skip
-SEPARATORS = {";": "semicolon ;", ",": "comma ,", "\t": "tab", "|": "bar |"}
+SEPARATORS = {";": "semicolon ;", ",": "comma ,", "\t": "tab", "|": "bar |", " ": "blanks"}
 DECIMALS = {".": "point 0.5", ",": "comma 0,5"}
 OFFSETS = (
     "-12:00", "-11:00", "-10:00", "-09:30", "-09:00", "-08:00", "-07:00", "-06:00", "-05:00", "-04:00", "-03:30",
@@ -238,6 +238,8 @@ def _taken(preview: Preview) -> Iterator[tuple[str, str, tuple[Choice, ...]]]:
 
 
 def _row_fields(table: Mapping[str, Any]) -> Iterator[FactField]:
+    if "record" in table:
+        yield FactField("record", "Rows that begin with", str(table["record"]), "text")
     for key, label in (("header_row", "Headings in row"), ("first_row", "Readings from row")):
         if key in table and "header_row" in table:
             yield FactField(key, label, str(table[key]), "numeric")

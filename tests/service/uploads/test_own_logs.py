@@ -1,11 +1,16 @@
 """Raw logs of six axes in layouts of many loggers: what the preview says of their columns, rows and rate."""
 
 import json
+from collections import Counter
+from io import BytesIO
+from pathlib import Path
 from typing import Any
 
+import h5py
 import httpx
 import numpy as np
 import pytest
+from scipy.io import savemat
 
 from service.ingest import read_upload
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - the hook
@@ -201,6 +206,20 @@ def test_gyros_of_which_no_turn_tells_the_unit_are_asked(client: httpx.Client) -
     assert fields(again) == FACTS_OF_EVERY_LOG
 
 
+def test_a_unit_that_gravity_or_the_turns_contradict_is_asked(client: httpx.Client) -> None:
+    columns = [clock("t [s]", seconds), *triad(xyz("acc* [m/s²]"), HANDS.force / GRAVITY)]
+    found = previewed(client, written([*columns, *triad(xyz("gyr* [rad/s]"), DEGREES)]))
+    assert {f"sensors[{k}].reading_unit" for k in range(1, 7)} <= fields(found)
+
+
+def test_axes_are_also_called_by_the_vehicle(client: httpx.Client) -> None:
+    columns = [clock("t [s]", seconds), *triad([f"{one} rate [deg/s]" for one in ("Roll", "Pitch", "Yaw")], DEGREES)]
+    names = [f"{one} acceleration [m/s²]" for one in ("Longitudinal", "Lateral", "Vertical")]
+    assert read_as(client, written([*columns, *triad(names, HANDS.force)])) == (
+        ["time_s", "GX", "GY", "GZ", "AX", "AY", "AZ"], 100.0,
+    )  # fmt: skip
+
+
 def test_a_kind_against_its_unit_is_asked(client: httpx.Client) -> None:
     content = LAYOUTS["german"][0]
     mapping = previewed(client, content)["mapping"]
@@ -265,3 +284,126 @@ def test_a_column_is_ignored_by_its_kind(client: httpx.Client) -> None:
     page = client.post("/upload/layout", files={"file": ("log.csv", LAYOUTS["russian"][0])}).text
     fields = shown(sent(client, shown(page), **{"kind.7": "ignored", "do": "look"}).text)
     assert (fields["as.7"], fields["kind.7"]) == ("", "ignored")
+
+
+def text_of(*lines: str) -> bytes:
+    return "\n".join(lines).encode()
+
+
+def read_as(client: httpx.Client, content: bytes, name: str = "log.txt") -> tuple[list[str | None], float]:
+    """Meanings of the columns, and the rate."""
+    mapping = previewed(client, content, name)["mapping"]
+    return [column["as"] for column in mapping["columns"]], mapping["session"].get("sample_rate_hz")
+
+
+CELLS = [
+    seconds(t) + "".join(f" {value:.5f}" for value in force) for t, force in zip(HANDS.time, HANDS.force, strict=True)
+]
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        text_of("time ax ay az", *CELLS),
+        text_of("# recorded by hand", "# time [s]  ax [m/s^2] ay [m/s^2] az [m/s^2]", *CELLS),
+        text_of("time  ax    ay   az", *(cell.replace(" ", "    ").replace(".", ",") for cell in CELLS)),
+        text_of("time;\tax;\tay;\taz;", *(cell.replace(" ", ";\t") + ";" for cell in CELLS)),
+        text_of('"sep=,"', "time,ax,ay,az,", *(cell.replace(" ", ",") + "," for cell in CELLS)),
+        text_of(
+            '"firmware","4.2"', '"acc_1G",2048', '"time","ax","ay","az"', *(cell.replace(" ", ",") for cell in CELLS)
+        ),
+    ],
+    ids=[
+        "blanks",
+        "comments",
+        "decimal commas among blanks",
+        "two signs",
+        "a sign behind each value",
+        "settings above",
+    ],
+)
+def test_a_log_is_cut_whatever_stands_between_its_values(client: httpx.Client, content: bytes) -> None:
+    meanings, rate = read_as(client, content)
+    assert ([meaning for meaning in meanings if meaning], rate) == (["time_s", "AX", "AY", "AZ"], 100.0)
+
+
+def test_of_records_of_several_kinds_the_most_are_read(client: httpx.Client) -> None:
+    lines = [
+        "$COL,GNSS,time,lat,lon",
+        "$COL,INERTIAL,time,ax,ay,az",
+        "$UNIT,GNSS,s,deg,deg",
+        "$UNIT,INERTIAL,s,m/s^2,m/s^2,m/s^2",
+    ]
+    for k, cell in enumerate(CELLS):
+        lines += [f"$GNSS,{k / 100},47.1,8.5"] * (k % 10 == 0) + ["$INERTIAL," + cell.replace(" ", ",")]
+    found = previewed(client, text_of(*lines))
+    assert found["mapping"]["table"]["record"] == "INERTIAL"
+    assert read_as(client, text_of(*lines)) == (["time_s", "AX", "AY", "AZ"], 100.0)
+    assert found["rows"] == len(CELLS)
+
+
+def mat(**variables: Any) -> bytes:
+    buffer = BytesIO()
+    savemat(buffer, variables)
+    return buffer.getvalue()
+
+
+def test_matrices_and_structures_of_matlab_are_columns(client: httpx.Client) -> None:
+    both = {"accel": HANDS.force, "gyro": HANDS.turning.T, "t": HANDS.time}
+    expected = (["A1", "A2", "A3", "G1", "G2", "G3", "time_s"], 100.0)
+    assert read_as(client, mat(**both), "log.mat") == expected
+    assert read_as(client, mat(data={"imu": both}, note="by hand"), "log.mat")[1] == 100.0
+    assert read_as(client, mat(log=both), "log.mat") == expected
+
+
+def test_a_variable_says_the_rate(client: httpx.Client) -> None:
+    assert read_as(client, mat(acc=HANDS.force, fs=100.0), "log.mat") == (["A1", "A2", "A3"], 100.0)
+
+
+def test_structures_of_matlab_7_3_are_columns(client: httpx.Client) -> None:
+    buffer = BytesIO()
+    with h5py.File(buffer, "w", userblock_size=512) as file:
+        for name, values in (("imu/t", HANDS.time[None]), ("imu/acc", HANDS.force.T), ("imu/gyr", HANDS.turning.T)):
+            file[name] = values
+            file[name].attrs["MATLAB_class"] = np.bytes_("double")
+        file["#refs#/a"] = [1.0]
+    content = b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(512, b"\0") + buffer.getvalue()[512:]
+    meanings, rate = read_as(client, content, "log.mat")
+    assert (sorted(map(str, meanings)), rate) == (["A1", "A2", "A3", "G1", "G2", "G3", "time_s"], 100.0)
+
+
+CASES = Path("/work/shared/cases/makers-tables/files")
+ACCELEROMETERS, SIX_AXES = {"accelerometer": 3}, {"accelerometer": 3, "gyroscope": 3}
+MAKERS: dict[str, tuple[dict[str, int], set[str], set[str]]] = {
+    "actigraph.csv": (ACCELEROMETERS, {"g"}, set()),
+    "betaflight.csv": (SIX_AXES, {"count", "°/s"}, set()),
+    "euroc.csv": (SIX_AXES, {"m/s²", "rad/s"}, set()),
+    "flysight.csv": (SIX_AXES, {"g", "°/s"}, set()),
+    "gyro_long.csv": ({"gyroscope": 1}, {"°/s"}, {"sample_rate_hz", "sensors", "sensors[1].nominal_axis"}),
+    "imu0.log": (SIX_AXES, {"m/s²", ""}, {"sample_rate_hz"}),
+    "kalibr.csv": (SIX_AXES, {"m/s²", "rad/s"}, set()),
+    "matrix.mat": (SIX_AXES, {"m/s²", "rad/s"}, set()),
+    "mtmanager.txt": (SIX_AXES, {"m/s²", ""}, {"sample_rate_hz"}),
+    "phyphox.csv": (ACCELEROMETERS, {"m/s²"}, set()),
+    "physicstoolbox.csv": (ACCELEROMETERS, {"g"}, set()),
+    "picoquake.csv": (SIX_AXES, {"g", "°/s"}, set()),
+    "sensorlogger.csv": (ACCELEROMETERS, {"m/s²"}, set()),
+    "shimmer.csv": (SIX_AXES, {"m/s²", "°/s"}, set()),
+    "struct.mat": (ACCELEROMETERS, {"m/s²"}, set()),
+    "v73.mat": (ACCELEROMETERS, {"m/s²"}, set()),
+    "witmotion.txt": (SIX_AXES, {"g", "°/s"}, set()),
+    "ximu3.csv": (SIX_AXES, {"g", "°/s"}, set()),
+}
+"""Kinds, units and questions of makers' files; all of them have 100 Hz."""
+
+
+@pytest.mark.skipif(not CASES.exists(), reason="the makers' files are not part of the project")
+@pytest.mark.parametrize("name", MAKERS)
+def test_files_of_makers_ask_one_question_at_most(client: httpx.Client, name: str) -> None:
+    found = previewed(client, (CASES / name).read_bytes(), name)
+    session, (kinds, units, asked) = found["mapping"]["session"], MAKERS[name]
+    assert Counter(sensor["kind"] for sensor in session["sensors"]) == kinds
+    assert {sensor["reading_unit"] for sensor in session["sensors"]} == units
+    assert fields(found) - FACTS_OF_EVERY_LOG == asked
+    assert session["programme"] == "arbitrary-orientations"
+    assert ("sample_rate_hz" in asked) or session["sample_rate_hz"] == pytest.approx(100.0)
