@@ -13,6 +13,7 @@ from pydantic import BaseModel, Field, TypeAdapter
 
 from estimator.json_object import Json
 from service.errors import NotFoundError
+from service.ingest.layout.kinds import KINDS, kinds_of
 from service.jobs.records import Job, JobKind, under_way
 from service.jobs.store import Jobs
 from service.kit.arriving_files import held
@@ -193,6 +194,7 @@ class LayoutColumn(BaseModel):
     numeric: bool = Field(description="Whether most of its cells are numbers.")
     empty: bool = Field(description="Whether no cell says anything.")
     words: list[str] = Field(description="The different texts of a column with few of them.")
+    kind: str = Field(description=f"What it is by the mapping: {', '.join(KINDS)}.")
 
 
 class PreviewSchema(BaseModel):
@@ -225,13 +227,17 @@ def preview_layout(file: FileOf, storage: StorageOf, unit: Unit = "", unit_type:
         storage, held(file.content), file.filename, mapping=file.mapping, unit=unit.strip(), unit_type=unit_type.strip()
     )
     look, session = result.seen, result.session
+    kinds = kinds_of([column.get("as") for column in result.mapping["columns"]], result.mapping["session"])
     return PreviewSchema(
         mapping=result.mapping,
         remembered=result.remembered,
         fingerprint=result.fingerprint,
         rows=look["rows"],
         sheets=list(look["sheets"]),
-        columns=[LayoutColumn.model_validate(column) for column in look["columns"]],
+        columns=[
+            LayoutColumn.model_validate({**column, "kind": kind})
+            for column, kind in zip(look["columns"], kinds, strict=True)
+        ],
         problems=faults(result.problems),
         first_rows=[] if session is None else first_rows(session),
         felt=None if session is None else felt_length(session),

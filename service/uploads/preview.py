@@ -1,7 +1,7 @@
 """Preview of a table of custom layout: its mapping, its missing facts, and its first rows."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -9,14 +9,14 @@ import numpy as np
 from estimator.errors import Problem, SessionError
 from estimator.json_object import Json
 from estimator.message import say
-from estimator.session import ACCELEROMETER, CalibrationSession
+from estimator.session import CalibrationSession
 from estimator.writing import session_document
 from service.errors import NotFoundError, RefusedError
 from service.ingest import look_at, read_upload
 from service.ingest.layout.envelope import wrapped
+from service.ingest.layout.facts import Rows, completed, facts_seen, questions, told_by_rate, with_unit_of_time
 from service.ingest.layout.mapping import FORMAT, PER_FILE_FIELDS, fingerprint, layout_of
-from service.ingest.layout.understand import SeenColumn, understood
-from service.ingest.layout.vocabulary import plain_label
+from service.ingest.layout.understand import SeenColumn, understood, with_kinds
 from service.planning.pattern import earlier
 from service.storage import Storage
 from service.types.store import UnitTypes
@@ -26,8 +26,6 @@ from service.uploads.store import Layouts
 KNOWN = "This is a session file: upload it as it is, without a mapping."
 FIRST_ROWS = 6
 OF_A_LOG = ("unit", "started_at", "notes", "sample_rate_hz")
-NO_STAND = {"id": ""}
-"""A stand without any facts."""
 
 
 @dataclass(frozen=True)
@@ -57,18 +55,27 @@ def preview(
             raise RefusedError(KNOWN, (Problem("file", KNOWN),))
         is_remembered = False
         if mapping is None:
-            mapping, is_remembered = _proposed(storage, look, unit, unit_type)
+            mapping, is_remembered = _proposed(storage, look, unit, unit_type, filename)
         complete = {**mapping, "format": FORMAT, "table": dict(look["taken"]), "columns": _columns_for(look, mapping)}
         layout_of(complete, filename)
+        rows = Rows(complete["columns"], _seen(look), look["rows"])
+        complete["session"] = completed(complete.get("session", {}), rows)
     except SessionError as fault:
         raise RefusedError(
             say("{filename} cannot be read as a table. Nothing was stored.", filename=filename), fault.problems
         ) from fault
     session, problems = _read(complete, content, filename)
+    asked = questions(complete["session"], rows)
+    answered = {problem.field for problem in asked} | set(told_by_rate(complete["session"], rows))
+    problems = (*asked, *(problem for problem in problems if problem.field not in answered))
     return Preview(complete, fingerprint(look), is_remembered, look, session, problems)
 
 
-def _proposed(storage: Storage, look: Mapping[str, Any], unit: str, unit_type: str) -> tuple[Json, bool]:
+def _seen(look: Mapping[str, Any]) -> list[SeenColumn]:
+    return [SeenColumn(**column) for column in look["columns"]]
+
+
+def _proposed(storage: Storage, look: Mapping[str, Any], unit: str, unit_type: str, filename: str) -> tuple[Json, bool]:
     """The mapping of the last file with this layout, or of the last session of the unit or its type."""
     with storage.database.reading() as store:
         if unit and not unit_type and Units(store).exists(unit):
@@ -78,8 +85,11 @@ def _proposed(storage: Storage, look: Mapping[str, Any], unit: str, unit_type: s
         facts = found["session"] if not unit else facts_of(storage, unit, unit_type) or found["session"]
         return {**found, "session": _with_unit(_titled({**facts, **_log_facts(look)}, look), unit)}, True
     facts = facts_of(storage, unit, unit_type)
-    columns = understood([SeenColumn(**column) for column in look["columns"]], facts.get("sensors", ()))
-    found = {**facts, **look["facts"]} or _unknown(columns)
+    seen = _seen(look)
+    guesses = with_kinds(seen, facts.get("sensors", ()), filename.rpartition(".")[0])
+    columns = with_unit_of_time([guess.column for guess in guesses], seen, look["rows"])
+    guesses = [replace(guess, column=column) for guess, column in zip(guesses, columns, strict=True)]
+    found = {**facts, **look["facts"]} or facts_seen(guesses, seen, look["rows"])
     return {"columns": columns, "session": _with_unit(_titled(found, look), unit)}, False
 
 
@@ -113,25 +123,6 @@ def facts_of(storage: Storage, unit: str, unit_type: str) -> Json:
     return {key: value for key, value in document.items() if key not in ("format", "table", *PER_FILE_FIELDS)}
 
 
-def _unknown(columns: Sequence[Mapping[str, Any]]) -> Json:
-    """Sensors from the headings, of a block of which nothing else is known."""
-    sensor_columns = [column for column in columns if column["as"] and is_sensor(column["as"])]
-    gyros = sum(str(column["as"]).startswith("G") for column in sensor_columns)
-    return {
-        "block": "gyroscope" if 2 * gyros > len(sensor_columns) else ACCELEROMETER,
-        "programme": "two-axis-stand",
-        "stand": NO_STAND,
-        "sensors": [
-            {"name": column["as"], "reading_unit": plain_label(column.get("unit", ""))} for column in sensor_columns
-        ],
-    }
-
-
-def is_sensor(meaning: str) -> bool:
-    """Whether a column is a sensor: columns of a session and standard errors are in lower case."""
-    return bool(meaning) and meaning != meaning.lower() and not meaning.endswith("_se")
-
-
 def _columns_for(look: Mapping[str, Any], mapping: Mapping[str, Any]) -> list[Any]:
     """The mapping's columns where they match the file; else recognised anew, as for another sheet."""
     columns = mapping.get("columns", [])
@@ -141,7 +132,7 @@ def _columns_for(look: Mapping[str, Any], mapping: Mapping[str, Any]) -> list[An
         return list(columns)
     sensors = mapping.get("session", {}).get("sensors", ())
     sensors_known = [sensor for sensor in sensors if isinstance(sensor, Mapping)]
-    return understood([SeenColumn(**column) for column in look["columns"]], sensors_known)
+    return understood(_seen(look), sensors_known)
 
 
 def _read(

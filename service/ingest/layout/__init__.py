@@ -1,8 +1,11 @@
 """Tables of custom layout: previewed, recognised, mapped by hand where needed, and read as a session.
 
 envelope    the uploaded bytes and their mapping in one file: what is stored
-decoding    bytes of text → text            grids    any table → cells, headings
-titles      rows above a table → facts      vocabulary, understand   what headings mean, in three languages
+decoding    bytes of text → text            cutting  text → rows
+grids       any table → cells, headings
+titles      rows above a table → facts      vocabulary, senses   words of headings, in four languages
+evidence    what values say                 triads, understand   headings and values → columns of a mapping
+kinds       kinds of columns                facts    columns and values → facts of a session
 mapping     `imu-mapping/1`, checked        reading  cells under a mapping → imu-session/1
 look        what a preview shows of a file
 """

@@ -1,7 +1,5 @@
 """Any table → columns of cells with their headings, and the settings of the parser."""
 
-import csv
-import io
 import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -17,6 +15,7 @@ from estimator.screening import Screening
 from service.ingest import hdf5, logs, mat, parquet
 from service.ingest.foreign import require_table
 from service.ingest.formats import HDF5, MAT, PARQUET, XLSX
+from service.ingest.layout.cutting import SCANNED_ROWS, Cell, cut, of_record, record_of, separator_of
 from service.ingest.layout.decoding import decoded
 from service.ingest.layout.titles import stated_in
 from service.ingest.layout.understand import joined, split_unit
@@ -24,13 +23,6 @@ from service.ingest.layout.vocabulary import unit_of
 from service.ingest.xlsx import BOOLEANS, check_workbook, letters_of
 from service.kit.limits import check_table, refusal
 
-Cell = str | float | None
-SEPARATORS = (";", "\t", "|", ",")
-"""Separators of columns, the unlikeliest within a cell first: a comma may be a decimal comma."""
-SCANNED_ROWS = 60
-"""Rows among which the headings are searched."""
-EQUAL_SHARE = 0.8
-"""Share of the first lines that a separator cuts into the same number of cells."""
 NUMBER = re.compile(r"^[+\-−]?[\d \u00a0\u202f']*[.,]?\d+(?:[eEЕ][+\-]?\d+)?$|^[+\-−]?\d+[.,]$")
 """A number with a decimal point or comma, and spaces between thousands."""
 DECIMAL_COMMA = re.compile(r"^[+\-−]?[\d \u00a0\u202f]*,\d+(?:[eE][+\-]?\d+)?$")
@@ -38,6 +30,8 @@ FEWEST = 2
 """Columns of a table: text with one column is no table, or has another separator."""
 LONGEST_NUMBER = 40
 """Characters of a number, spaces included."""
+COMMENT = re.compile(r"^(?:#|%|//)+\s*(?=\w)")
+"""Signs of a comment before a heading."""
 LONGEST_HEADING = 200
 """Characters of a heading that are examined and kept."""
 SPACES = re.compile(r"[ \u00a0\u202f']")
@@ -122,32 +116,14 @@ def is_nothing(cell: Cell) -> bool:
 def _text(content: bytes, filename: str, stated: Mapping[str, Any]) -> Grid:
     text, encoding = decoded(content, filename, stated.get("encoding"))
     lines = text.replace("\r\n", "\n").replace("\r", "\n")
-    separator = str(stated.get("separator") or _separator(lines))
-    rows = _cut(lines, separator, filename)
-    check_table(filename, len(rows), max(map(len, rows), default=0))
+    separator = str(stated.get("separator") or separator_of(lines))
+    rows = cut(lines, separator, filename)
     taken = {"encoding": encoding, "separator": separator}
+    record = str(stated["record"]) if "record" in stated else record_of(rows)
+    if record:
+        rows, taken = of_record(rows, record), {**taken, "record": record}
+    check_table(filename, len(rows), max(map(len, rows), default=0))
     return _headed("text", rows, taken, stated, filename)
-
-
-def _separator(text: str) -> str:
-    lines = [line for line in text[:100_000].split("\n")[:SCANNED_ROWS] if line.strip()]
-    for separator in SEPARATORS:
-        counts = [line.count(separator) for line in lines if separator in line]
-        if counts and counts.count(count := max(counts, key=counts.count)) >= EQUAL_SHARE * len(lines) and count:
-            return separator
-    return max(SEPARATORS, key=text[:10_000].count)
-
-
-def _cut(text: str, separator: str, filename: str) -> list[list[Cell]]:
-    try:
-        rows = list(csv.reader(io.StringIO(text, newline=""), delimiter=separator[:1]))
-    except (csv.Error, ValueError, TypeError) as error:
-        raise refusal(
-            filename, "is not a table that can be cut at {separator}: {error}", separator=repr(separator), error=error
-        ) from error
-    while rows and not any(cell.strip() for cell in rows[-1]):
-        rows.pop()
-    return [[cell.strip() or None for cell in row] for row in rows]
 
 
 def _workbook(content: bytes, filename: str, stated: Mapping[str, Any]) -> Grid:
@@ -202,15 +178,16 @@ def _headed(
     sheets: tuple[str, ...] = (),
 ) -> Grid:
     width = max(map(len, rows), default=0)
+    short = _short(rows[:SCANNED_ROWS]) if kind == "text" else ()
     rows = [row + [None] * (width - len(row)) for row in rows]
-    first = int(stated.get("first_row") or _first_row(rows)) - 1
+    first = int(stated.get("first_row") or _first_row(rows, short)) - 1
     if not 0 <= first < len(rows):
         raise refusal(
             filename,
             "has no row of numbers below its headings; a table has one for every position; state the row of the first",
             "table",
         )
-    header = int(stated["header_row"]) if "header_row" in stated else _header_row(rows, first)
+    header = int(stated["header_row"]) if "header_row" in stated else _header_row(rows, first, short)
     headings = _headings(rows[header - 1 : first] if header else [], width)
     skipped = _skipped(rows, header, first, filename)
     columns = tuple([row[k] for row in rows[first:]] for k in range(width))
@@ -258,20 +235,28 @@ def _share(row: Sequence[Cell]) -> float:
     return sum(number_of(cell, ",") is not None for cell in cells) / len(cells) if cells else 0.0
 
 
-def _first_row(rows: list[list[Cell]]) -> int:
+def _short(rows: Sequence[Sequence[Cell]]) -> frozenset[int]:
+    """Rows of a text that end earlier than most: titles."""
+    lengths = [len(row) for row in rows]
+    usual = max(lengths, key=lengths.count, default=0)
+    return frozenset(j for j, length in enumerate(lengths) if 1 < length < usual)
+
+
+def _first_row(rows: list[list[Cell]], short: Collection[int]) -> int:
     """The first row, from 1, that is mostly numbers and as full as the rows after it; past the end if none."""
     counts = sorted(sum(not is_nothing(cell) for cell in row) for row in rows[:SCANNED_ROWS])
     usual = counts[len(counts) // 2] if counts else 0
     for j, row in enumerate(rows[:SCANNED_ROWS]):
         is_full = 2 * sum(not is_nothing(cell) for cell in row) >= usual
-        if _share(row) >= 0.5 and is_full and not _names_columns(rows, j):
+        if _share(row) >= 0.5 and is_full and j not in short and not _names_columns(rows, j):
             return j + 1
     return len(rows) + 1
 
 
-def _header_row(rows: list[list[Cell]], first: int) -> int:
-    """The upper one of one or two rows of headings right above the readings, from 1; 0 where there is none."""
-    if first < 2:
+def _header_row(rows: list[list[Cell]], first: int, short: Collection[int]) -> int:
+    """The upper one of one or two rows of headings right above the readings, from 1; 0 where there is none. ``short``:
+    rows of a text that end early, which are titles."""
+    if first < 2 or (first - 2 in short and not _of_units(rows[first - 1])):
         return max(first, 0)
     above = rows[first - 2]
     has_two_rows = _is_heading(above) and (_of_units(rows[first - 1]) or _is_torn(above))
@@ -309,7 +294,7 @@ def _headings(rows: Sequence[Sequence[Cell]], width: int) -> tuple[str, ...]:
             if row[k] is None and lower[k] is not None and not _of_units(lower):
                 row[k] = row[k - 1]
     columns = ([_written(row[k]) for row in parts if row[k] is not None] for k in range(width))
-    return tuple(" ".join(_heading(names).split())[:LONGEST_HEADING] for names in columns)
+    return tuple(COMMENT.sub("", " ".join(_heading(names).split()))[:LONGEST_HEADING] for names in columns)
 
 
 def _written(cell: Cell) -> str:
@@ -341,19 +326,16 @@ def _hdf5(content: bytes, filename: str) -> Grid:
 
 
 def _mat(content: bytes, filename: str) -> Grid:
-    variables = mat.variables(content, filename, most_rows=1)
-    return _named("mat", {name: mat.cells(column) for name, column in variables.items()})
+    return _named("mat", mat.table_of(content, filename))
 
 
 def _named(kind: str, table: Mapping[str, Any]) -> Grid:
     columns = tuple(_listed(cells) for cells in table.values())
     rows = max(map(len, columns), default=0)
-    return Grid(
-        kind,
-        tuple(name[:LONGEST_HEADING] for name in table),
-        tuple(c for c in columns if len(c) == rows),
-        {"first_row": 1, "decimal": "."},
-    )
+    whole = {name: cells for name, cells in zip(table, columns, strict=True) if len(cells) == rows}
+    single = [[name, cells[0]] for name, cells in zip(table, columns, strict=True) if len(cells) == 1]
+    headings = tuple(name[:LONGEST_HEADING] for name in whole)
+    return Grid(kind, headings, tuple(whole.values()), {"first_row": 1, "decimal": "."}, titles=stated_in(single))
 
 
 def _listed(cells: Sequence[Cell] | NDArray[Any]) -> list[Cell]:

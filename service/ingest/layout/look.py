@@ -1,15 +1,19 @@
 """Preview of a file before anything is decided: headings, first cells, the words of its columns."""
 
+from collections.abc import Sequence
 from typing import Any
+
+import numpy as np
 
 from estimator.json_object import Json
 from estimator.message import say
 from service.ingest import hdf5, mat, parquet
 from service.ingest.formats import HDF5, LOGS, MAT, PARQUET, XLSX
+from service.ingest.layout.cutting import Cell
 from service.ingest.layout.envelope import is_wrapped, unwrapped
-from service.ingest.layout.grids import Cell, Grid, grid_of, is_nothing, number_of
+from service.ingest.layout.grids import Grid, grid_of, is_nothing, number_of
 from service.ingest.layout.mapping import layout_of
-from service.ingest.layout.reading import word_text
+from service.ingest.layout.reading import seconds_of, word_text
 from service.ingest.xlsx import session_sheets, sheet_names
 from service.kit.limits import refusal
 
@@ -21,6 +25,10 @@ MOST_WORDS = 12
 """Distinct texts of a column of labels."""
 LONGEST_CELL = 60
 """Characters of a cell that are shown."""
+MOST_VALUES = 20_000
+"""First values of a column from which its meaning is told: some minutes of a log."""
+MOST_CELLS = 400_000
+"""Of all columns together."""
 MOSTLY = 0.5
 """Share of numbers from which a column counts as numeric."""
 
@@ -38,7 +46,7 @@ def is_session(content: bytes, filename: str) -> bool:
     if content.startswith(HDF5):
         return hdf5.has_metadata(content, filename)
     if content.startswith(MAT):
-        return mat.VARIABLE in mat.variables(content, filename, most_rows=1)
+        return mat.has_metadata(content, filename)
     head = content[:4096].lstrip(b"\xef\xbb\xbf \t\r\n")
     return not head or head[:1] in b"{[" or (head[:1] == b"#" and head.lstrip(b"# \t")[:1] == b"{")
 
@@ -72,18 +80,28 @@ def _column(heading: str, cells: Any, grid: Grid) -> Json:
     decimal = str(grid.taken.get("decimal", "."))
     cells = [cell for j, cell in enumerate(cells) if j not in grid.skipped]
     filled = [cell for cell in cells if not is_nothing(cell)]
-    numbers = sum(number_of(cell, decimal) is not None for cell in filled)
+    first_cells = cells[: min(MOST_VALUES, MOST_CELLS // len(grid.headings))]
+    values = [None if is_nothing(cell) else number_of(cell, decimal) for cell in first_cells]
+    numbers = sum(value is not None for value in values)
+    holds_numbers = bool(filled) and numbers >= MOSTLY * sum(not is_nothing(cell) for cell in first_cells)
     words = list(dict.fromkeys(word_text(cell)[:LONGEST_CELL] for cell in filled[:10_000]))
     first = next((j for j, cell in enumerate(cells) if not is_nothing(cell)), len(cells))
     return {
         "heading": heading,
         "cells": [_shown(cell) for cell in cells[:SHOWN]],
-        "numeric": bool(filled) and numbers >= MOSTLY * len(filled),
+        "numeric": holds_numbers,
         "empty": not filled,
         "words": words if len(words) <= MOST_WORDS else [],
         "holes": first == 0 and len(filled) < len(cells),
         "meaning": grid.meanings.get(heading),
+        "values": _numbers(values if holds_numbers else seconds_of(first_cells)),
     }
+
+
+def _numbers(values: Sequence[Cell]) -> np.ndarray[Any, Any] | None:
+    """The numbers, with NaN for others; None where there is none."""
+    numbers = np.array([value if isinstance(value, float | int) else np.nan for value in values], dtype=float)
+    return None if np.isnan(numbers).all() else numbers
 
 
 def _shown(cell: Cell) -> str:

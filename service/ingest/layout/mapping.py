@@ -12,7 +12,15 @@ from estimator.reading.problems import shown
 
 FORMAT = "imu-mapping/1"
 PARTS = ("format", "table", "columns", "session")
-TABLE = {"encoding": str, "separator": str, "decimal": str, "sheet": str, "header_row": int, "first_row": int}
+TABLE = {
+    "encoding": str,
+    "separator": str,
+    "record": str,
+    "decimal": str,
+    "sheet": str,
+    "header_row": int,
+    "first_row": int,
+}
 """Settings of the parser, as far as stated."""
 COLUMN = {"heading": str, "as": str, "unit": str, "words": dict, "fill_down": bool}
 ENCODINGS = ("utf-8", "utf-16", "utf-16-le", "utf-16-be", "cp1251", "cp1252", "koi8-r", "cp866")

@@ -11,14 +11,21 @@ from estimator.message import joined, say
 from estimator.reading.problems import Where, shown
 from estimator.screening import JUDGED_BY_PARITY, Screening, declined_by
 from estimator.session import IN_SERVICE
-from service.ingest.layout.grids import Cell, Grid, grid_of, is_nothing, number_of
+from service.ingest.layout.cutting import Cell
+from service.ingest.layout.grids import Grid, grid_of, is_nothing, number_of
 from service.ingest.layout.mapping import ColumnMapping, Layout
 from service.ingest.layout.vocabulary import conversion, target_label
 
 FORMAT = "imu-session/1"
 WORDS = ("run", "position")
-CLOCK = re.compile(r"^(?:(?P<h>\d{1,2}):)?(?P<m>\d{1,2}):(?P<s>\d{1,2}(?:[.,]\d+)?)$")
-"""A time of day, or minutes and seconds."""
+CLOCK = re.compile(
+    r"^(?:\d{1,4}/\d{1,2}/\d{1,4}[ T]+)?(?:(?P<h>\d{1,2}):)?(?P<m>\d{1,2}):(?P<s>\d{1,2}(?:[.,]\d+)?)"
+    r"(?: ?(?P<half>[AaPp])\.?[Mm]\.?)?$"
+)
+"""A time of day, or minutes and seconds; a date with strokes may be before it, in any order."""
+NOON = 12
+EPOCH = 1e8
+"""Seconds beyond which a time counts from 1970: 3 years, for which nothing is left switched on."""
 DAY = 86_400.0
 """Seconds in a day."""
 
@@ -100,8 +107,10 @@ def _read(cells: list[Cell], column: ColumnMapping, layout: Layout, decimal: str
         return [_word(cell, column) for cell in cells]
     numbers = [None if is_nothing(cell) else number_of(cell, decimal) for cell in cells]
     if column.meaning == "time_s" and all(number is None for number in numbers):
-        return _clock(cells)
+        return seconds_of(cells)
     convert = _in_unit(column, layout)
+    if column.meaning == "time_s" and (start := next((n for n in numbers if n is not None), 0.0)) and convert(start):
+        numbers = _from_epoch(numbers, convert(start) or 0.0, start)
     return [cell if n is None and not is_nothing(cell) else convert(n) for n, cell in zip(numbers, cells, strict=True)]
 
 
@@ -111,6 +120,13 @@ def _in_unit(column: ColumnMapping, layout: Layout) -> Callable[[float | None], 
     if column.meaning and column.meaning.endswith("_se"):
         offset = 0.0
     return lambda number: None if number is None else number * times / over + offset
+
+
+def _from_epoch(numbers: list[float | None], seconds: float, start: float) -> list[float | None]:
+    """Times since 1970, of which the first is at so many seconds, from the first on; others unchanged."""
+    if abs(seconds) < EPOCH:
+        return numbers
+    return [None if number is None else number - start for number in numbers]
 
 
 def _word(cell: Cell, column: ColumnMapping) -> Cell:
@@ -134,7 +150,7 @@ def _filled_down(cells: list[Cell]) -> list[Cell]:
     return filled
 
 
-def _clock(cells: Sequence[Cell]) -> list[Cell]:
+def seconds_of(cells: Sequence[Cell]) -> list[Cell]:
     """Dates and times of day as seconds since the first; anything else unchanged."""
     seconds = [_seconds(cell) for cell in cells]
     start = next((s for s in seconds if s is not None), 0.0)
@@ -154,8 +170,9 @@ def _seconds(cell: Cell) -> float | None:
     """Seconds since midnight, or since 1970 with a date."""
     text = str(cell or "").strip()
     if match := CLOCK.match(text):
-        return 3600 * int(match["h"] or 0) + 60 * int(match["m"]) + float(match["s"].replace(",", "."))
-    for form in ("%d.%m.%Y %H:%M:%S", "%d.%m.%Y %H:%M"):
+        hours = int(match["h"] or 0) % (NOON if match["half"] else 24) + NOON * ((match["half"] or "").lower() == "p")
+        return 3600 * hours + 60 * int(match["m"]) + float(match["s"].replace(",", "."))
+    for form in ("%d.%m.%Y %H:%M:%S.%f", "%d.%m.%Y %H:%M:%S", "%d.%m.%Y %H:%M"):
         try:
             return (datetime.strptime(text, form) - datetime(1970, 1, 1)).total_seconds()
         except ValueError:

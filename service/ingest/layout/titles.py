@@ -31,6 +31,17 @@ SPREADSHEET_DAYS = range(30_000, 80_000)
 """Numbers that a date cell has: days since the end of 1899."""
 LONGEST = 100
 """Characters of a title that is looked at."""
+RATE_NAMES = ("fs", "rate", "samplerate", "sample_rate", "sampling_rate", "samplingrate", "sample_rate_hz", "frequency")
+"""Names of a variable that holds the samples a second."""
+LONGEST_RATE = 300
+"""Characters of a row in which a sample rate is looked for."""
+RATE = re.compile(
+    r"(?:rate|frequenc[ye]|freq|frequenz|fréquence|cadence|частота\w*|sampl\w+|\bat)\W{0,3}"
+    r"(?:[(\[]?(?:hz|гц)[)\]]?\W{0,3}(?P<bare>\d+(?:[.,]\d+)?)"
+    r"|(?P<number>\d+(?:[.,]\d+)?) ?(?P<times>[kк]?)(?:hz|гц|sps)\b)",
+    re.I,
+)
+"""Samples a second: ``data_rate = 100.0 Hz``, ``Abtastfrequenz (Hz): 100``."""
 
 
 def stated_in(rows: Sequence[Sequence[str | float | None]]) -> Json:
@@ -43,7 +54,20 @@ def stated_in(rows: Sequence[Sequence[str | float | None]]) -> Json:
         facts["stand"] = {"id": found["stand"]}
     day, clock = found.get("day", ""), found.get("clock", "")
     start = _start(day or clock, clock or day)
+    rates = {rate for row in rows if (rate := _rate(row)) is not None}
+    facts |= {"sample_rate_hz": rates.pop()} if len(rates) == 1 else {}
     return facts | ({"started_at": start} if start else {})
+
+
+def _rate(row: Sequence[str | float | None]) -> float | None:
+    """The samples a second that a row states."""
+    if len(row) == 2 and isinstance(row[0], str) and isinstance(row[1], float | int) and row[0].lower() in RATE_NAMES:
+        return float(row[1]) or None
+    match = RATE.search(" ".join(str(cell) for cell in row if cell is not None)[:LONGEST_RATE])
+    if match is None:
+        return None
+    rate = float((match["bare"] or match["number"]).replace(",", ".")) * (1e3 if match["times"] else 1.0)
+    return rate or None
 
 
 def _pairs(rows: Sequence[Sequence[str | float | None]]) -> Iterator[tuple[str, str]]:

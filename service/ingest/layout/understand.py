@@ -1,11 +1,16 @@
-"""Headings and first cells → a first mapping for people to correct."""
+"""Headings, units and values → a first mapping for people to correct."""
 
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from estimator.json_object import Json
+from service.ingest.layout.evidence import Array, clock_unit
+from service.ingest.layout.senses import Sense, is_of_another_thing, sense_of, words_of
+from service.ingest.layout.triads import FoundSensor, found_in, without_headings
 from service.ingest.layout.vocabulary import (
     ASIDE,
     BY_WORD,
@@ -14,16 +19,30 @@ from service.ingest.layout.vocabulary import (
     FLIPPED,
     LOOK_ALIKE,
     SENSOR_WORDS,
+    TIME_WORDS,
     plain_label,
     unit_of,
 )
 
-IN_BRACKETS = re.compile(r"^(?P<name>.*?)\s*[\[(](?P<unit>[^\[\]()]{1,20})[\])]\s*$")
+IN_BRACKETS = re.compile(r"^(?P<name>.*?)\s*[\[(](?P<unit>(?:[^\[\]()]|\([^()]*\)){1,24})[\])]\s*$")
+BEHIND_BLANK = re.compile(r"^(?P<name>.+?)[_ ](?P<unit>[^\s\[(]{1,12}/[^\s\[(]{1,8}|\S{1,6} [sс]\^?[-−⁻][12¹²])$")
 AFTER_COMMA = re.compile(r"^(?P<name>.+?)\s*[,/;:]\s*(?P<unit>[^,;]{1,12})$")
 AFTER_BAR = re.compile(r"^(?P<name>.+?)[_ ](?P<unit>[^\W_]{1,5}(?:_s2?)?|°C|°)$")
-"""Unit of a heading: in brackets, after a comma, after an underscore or a space."""
+"""Unit of a heading: in brackets, with a stroke behind a blank, after a comma, after an underscore or a space."""
+PLACE = re.compile(r"\s*(?:\d{1,3}|[xyzXYZ])\s*")
+"""Content of brackets that is no unit but the place of a sensor."""
 NUMBERED = re.compile(r"^(?P<word>\D*?)[ _.\-№#]*(?P<place>\d{1,3}|[xyzXYZ])$")
 """A sensor by its number or axis."""
+NO_HEADING = re.compile(r"(?:column \d+)?")
+"""Heading of a column in a table without any."""
+LABELS = (
+    "run", "beta_deg", "position", "turn_angle_deg", "turn_rate_deg_s", "direction_x", "direction_y", "direction_z",
+)  # fmt: skip
+"""Columns that say how the block stood or was turned: they stay while it rests."""
+MOVES = 0.2
+"""Share of the rows with another value than the row before from which a quantity of many rows is no label."""
+MANY_ROWS = 200
+"""Rows from which that can be told: a stand has fewer settings."""
 
 
 @dataclass(frozen=True)
@@ -42,20 +61,61 @@ class SeenColumn:
     """Whether cells are empty below filled ones."""
     meaning: str | None = None
     """Meaning stated in the file."""
+    values: Array | None = None
+    """(n,) first values, NaN where there is none; of dates and times of day their seconds."""
+
+
+@dataclass(frozen=True)
+class Understood:
+    """One column as it is proposed."""
+
+    column: Json
+    """Column of a mapping."""
+    kind: str = ""
+    """Kind of a new sensor; else empty."""
 
 
 def understood(columns: Sequence[SeenColumn], sensors: Sequence[Mapping[str, Any]]) -> list[Json]:
     """Columns of a mapping; ``sensors`` are those of the unit or its type, empty where unknown."""
+    return [guess.column for guess in with_kinds(columns, sensors)]
+
+
+def with_kinds(
+    columns: Sequence[SeenColumn], sensors: Sequence[Mapping[str, Any]], table: str = ""
+) -> list[Understood]:
+    """The same with the kinds of new sensors; ``table``: what the table is called."""
     names = {_plain(str(sensor.get("name", ""))): str(sensor.get("name", "")) for sensor in sensors}
-    guesses: list[Json] = []
+    senses = {k: sense for k, column in enumerate(columns) if (sense := _sense(column)) is not None}
+    found: dict[int, FoundSensor | None] = {}
+    bare = not names and all(NO_HEADING.fullmatch(column.heading) for column in columns)
+    if not names:
+        values = {k: column.values for k, column in enumerate(columns) if column.numeric}
+        found = without_headings(values) if bare else found_in(senses, values, table)
+    guesses: list[Understood] = []
     used: set[str] = set()
-    for column in columns:
-        guess = _guess(column, names)
-        if guess["as"] in used:
-            guess = {**guess, "as": None}
-        used |= {guess["as"]} - {None}
+    for k, column in enumerate(columns):
+        sensor = found.get(k)
+        if sensor is not None:
+            unit = {"unit": sensor.unit} if sensor.unit else {}
+            guess = Understood({"heading": column.heading, "as": sensor.name, **unit}, sensor.kind)
+        else:
+            guess = Understood(_guess(column, names, senses.get(k), is_none=k in found))
+        if bare and "time_s" not in used and not guess.column["as"] and (clock := _clock_without_heading(column)):
+            guess = Understood({"heading": column.heading, "as": "time_s", "unit": clock})
+        if guess.column["as"] in used:
+            guess = Understood({"heading": column.heading, "as": None})
+        used |= {guess.column["as"]} - {None}
         guesses.append(guess)
     return guesses
+
+
+def _sense(column: SeenColumn) -> Sense | None:
+    """The sensor that a heading names; none of a column of texts, or with a meaning of its own."""
+    name, unit = split_unit(column.heading)
+    is_told = column.meaning or _plain(name) in (*BY_WORD, *ASIDE) or {*words_of(name)} & {*ERROR_WORDS}
+    if column.empty or not column.numeric or is_told:
+        return None
+    return sense_of(name, unit)
 
 
 def joined(group: str, heading: str) -> str:
@@ -69,20 +129,25 @@ def joined(group: str, heading: str) -> str:
 
 def split_unit(heading: str) -> tuple[str, str]:
     """``β, град`` → ``β`` and ``град``; an empty unit where none is recognised."""
-    for pattern in (IN_BRACKETS, AFTER_COMMA, AFTER_BAR):
+    for pattern in (IN_BRACKETS, BEHIND_BLANK, AFTER_COMMA, AFTER_BAR):
         match = pattern.match(heading.strip())
         if match and unit_of(match["unit"]) is not None:
             return match["name"], plain_label(match["unit"])
     match_any = IN_BRACKETS.match(heading.strip())
-    return (match_any["name"], "") if match_any else (heading, "")
+    return (match_any["name"], "") if match_any and not PLACE.fullmatch(match_any["unit"]) else (heading, "")
 
 
-def _guess(column: SeenColumn, names: Mapping[str, str]) -> Json:
+def _guess(column: SeenColumn, names: Mapping[str, str], sense: Sense | None, *, is_none: bool) -> Json:
+    """A column that is no new sensor; ``is_none``: its values say that it is no sensor at all."""
     name, unit = split_unit(column.heading)
     guess: Json = {"heading": column.heading, "as": None}
-    if column.empty:
+    if column.empty or is_none:
         return guess
-    meaning = column.meaning or _meaning(name, unit, column, names)
+    meaning = column.meaning or _meaning(name, unit, column, names, sense)
+    if meaning in LABELS and _moves(column):
+        return guess
+    if meaning == "time_s":
+        unit = unit or _unit_of_time(name, column)
     guess |= {"as": meaning} | ({"unit": unit} if unit and meaning else {})
     if meaning == "run":
         guess["words"] = run_words(column.words)
@@ -91,24 +156,56 @@ def _guess(column: SeenColumn, names: Mapping[str, str]) -> Json:
     return guess
 
 
-def _meaning(name: str, unit: str, column: SeenColumn, names: Mapping[str, str]) -> str | None:
+def _clock_without_heading(column: SeenColumn) -> str:
+    """The unit of a column that is surely a clock; empty of any other."""
+    if column.values is None or not column.numeric or not np.all(np.diff(column.values) >= 0):
+        return ""
+    unit, is_certain = clock_unit(column.values)
+    return unit if is_certain else ""
+
+
+def _moves(column: SeenColumn) -> bool:
+    """Whether the values of many rows are too often new ones for a setting."""
+    values = column.values
+    return values is not None and len(values) >= MANY_ROWS and bool(np.mean(np.diff(values) != 0) > MOVES)
+
+
+def _unit_of_time(name: str, column: SeenColumn) -> str:
+    """The unit of times by a word of their heading, or by the times themselves where these leave no doubt."""
+    words = [word for word in words_of(name) if getattr(unit_of(word), "quantity", "") == "time" and len(word) > 1]
+    if words:
+        return plain_label(words[-1])
+    if column.values is None or not column.numeric:
+        return ""
+    unit, is_certain = clock_unit(column.values)
+    return unit if is_certain else ""
+
+
+def _meaning(name: str, unit: str, column: SeenColumn, names: Mapping[str, str], sense: Sense | None) -> str | None:
     """A column of a session, a sensor, a sensor's standard error, or None."""
     plain, quantity = _plain(name), getattr(unit_of(unit), "quantity", "") if unit else ""
-    if quantity == "temperature" and plain in ("t", "т", "temp", "температура"):
-        return "temperature_c"
+    words = words_of(name)
     if plain in names:
         return names[plain]
+    if quantity == "temperature" or (not quantity and any(word.startswith(("temp", "темп")) for word in words)):
+        return "time_s" if "temps" in words else "temperature_c"
     if column.words and all(_run_word(word) in (*DIRECT, *FLIPPED) for word in column.words) and not column.numeric:
         return "run"
     whole = _plain(column.heading)
     if whole in BY_WORD or plain in BY_WORD:
         return BY_WORD.get(whole) or BY_WORD[plain]
+    if quantity == "time" or (not quantity and any(word in TIME_WORDS for word in words) and sense is None):
+        return "time_s"
     for word in ERROR_WORDS:
         rest = plain.removesuffix(word) if plain.endswith(word) else plain.removeprefix(word)
         if rest != plain and (sensor := _sensor(_plain(rest), names)):
             return f"{sensor}_se"
     if plain in ASIDE or not column.numeric:
         return next((BY_WORD[w] for w in map(_plain, re.split(r"[\s,]+", name)) if w in BY_WORD), None)
+    if sense is not None and (sensor := _known(sense.letter, sense.place, names)):
+        return sensor
+    if is_of_another_thing(name) and not _by_a_word(name):
+        return None
     return _sensor(plain, names) or _by_its_end(name, names) or _by_a_word(name)
 
 
@@ -132,10 +229,15 @@ def _sensor(plain: str, names: Mapping[str, str]) -> str | None:
     if match is None or match["word"] not in SENSOR_WORDS:
         return None
     letter, place = SENSOR_WORDS[match["word"]], match["place"].lstrip("0").upper()
-    candidates = [sensor for short, sensor in names.items() if short.endswith(place.casefold())]
-    if len(candidates) == 1 or (letter and f"{letter}{place}" in candidates):
-        return candidates[0] if len(candidates) == 1 else f"{letter}{place}"
-    return None if names else f"{letter or 'A'}{place}"
+    return _known(letter, place, names) or (None if names else f"{letter or 'A'}{place}")
+
+
+def _known(letter: str, place: str, names: Mapping[str, str]) -> str | None:
+    """The known sensor of this letter and place, or the only one at this place."""
+    if place and f"{letter}{place}".casefold() in names:
+        return names[f"{letter}{place}".casefold()]
+    candidates = [sensor for short, sensor in names.items() if place and short.endswith(place.casefold())]
+    return candidates[0] if len(candidates) == 1 and (not letter or candidates[0][0] == letter) else None
 
 
 def run_words(words: Sequence[str]) -> dict[str, str]:

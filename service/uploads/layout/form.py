@@ -19,7 +19,9 @@ from estimator.json_object import Json
 from estimator.message import say
 from estimator.simulate import cone
 from service.errors import RefusedError
+from service.ingest.layout.kinds import first_of, is_sensor, kinds_of
 from service.ingest.layout.understand import run_words, split_unit
+from service.ingest.layout.vocabulary import LETTERS, conversion
 from service.kit.arriving_files import held
 from service.kit.limits import in_force
 from service.kit.text import fault_of_text, with_plain_ends
@@ -28,7 +30,6 @@ from service.people.dependencies import StorageOf
 from service.sessions.sent import SentFile
 from service.storage.aside import aside, set_aside
 from service.storage.files import Files
-from service.uploads.preview import is_sensor
 from service.web.dependencies import Now, UploadSlotOf, limited
 
 MOST_CARRIED = 4 * 1024 * 1024
@@ -37,7 +38,7 @@ MOST_FIELDS = 5000
 """Most fields of the form: two for each of 300 columns, a few for each sensor."""
 INFLATION = 1.4
 """Growth of bytes encoded as text: 4/3, and the form around them."""
-CHOSEN = ("sheet", "encoding", "separator", "decimal", "header_row", "first_row")
+CHOSEN = ("sheet", "encoding", "separator", "record", "decimal", "header_row", "first_row")
 """Settings of the parser that can be chosen."""
 TEXTS = ("unit", "unit_type", "operator", "notes", "programme", "block", "stand.id")
 NUMBERS = (
@@ -168,6 +169,7 @@ def corrected(form: LayoutForm) -> Json | None:
     table = dict(before.get("table", {})) | _chosen(fields)
     is_same = all(table.get(key) == value for key, value in before.get("table", {}).items())
     columns = [_column(fields, k, column) for k, column in enumerate(before["columns"])] if is_same else []
+    kinds = _kinds(fields, before, columns)
     if not is_same:
         changed = {key for key in CHOSEN if table.get(key) != before.get("table", {}).get(key)}
         table = {key: table[key] for key in changed}
@@ -175,8 +177,26 @@ def corrected(form: LayoutForm) -> Json | None:
         **before,
         "table": table,
         "columns": columns,
-        "session": _session(fields, before.get("session", {}), columns),
+        "session": _session(fields, before.get("session", {}), columns, kinds),
     }
+
+
+def _kinds(fields: Mapping[str, str], before: Mapping[str, Any], columns: list[Json]) -> dict[str, str]:
+    """Kinds of the sensors. A column of another kind than before becomes the first of that kind, unless it was also
+    chosen what it is; a sensor of another kind keeps its name."""
+    known = before.get("session", {})
+    was = [column.get("as") if isinstance(column, dict) else None for column in before["columns"]]
+    kinds = kinds_of([column["as"] for column in columns], known if isinstance(known, dict) else {})
+    for k, (column, kind) in enumerate(zip(columns, kinds, strict=True)):
+        chosen = fields.get(f"kind.{k}", kind)
+        if column["as"] != (was[k] or None) or chosen == kind:
+            continue
+        kinds[k] = chosen
+        if not (chosen in LETTERS and is_sensor(column["as"] or "")):
+            column["as"] = first_of(chosen, [other["as"] for other in columns])
+            if column["as"] in (None, "run", "position"):
+                column.pop("unit", None)
+    return {column["as"]: kind for column, kind in zip(columns, kinds, strict=True) if is_sensor(column["as"] or "")}
 
 
 def _chosen(fields: Mapping[str, str]) -> Json:
@@ -203,7 +223,7 @@ def _column(fields: Mapping[str, str], k: int, before: Any) -> Json:
     return column
 
 
-def _session(fields: Mapping[str, str], before: Any, columns: list[Json]) -> Json:
+def _session(fields: Mapping[str, str], before: Any, columns: list[Json], kinds: Mapping[str, str]) -> Json:
     """The facts with those from the form; an empty field states nothing."""
     session = json.loads(json.dumps(before if isinstance(before, dict) else {}))
     for key in (*TEXTS, *NUMBERS):
@@ -212,7 +232,7 @@ def _session(fields: Mapping[str, str], before: Any, columns: list[Json]) -> Jso
     if fields.get("fact.day"):
         session["started_at"] = _started(fields)
     if columns:
-        session["sensors"] = _sensors(fields, session, columns)
+        session["sensors"] = _sensors(fields, session, columns, kinds)
     return {key: value for key, value in session.items() if value not in (None, "")}
 
 
@@ -260,7 +280,9 @@ def _value(text: str) -> float | str | None:
         return text
 
 
-def _sensors(fields: Mapping[str, str], session: Mapping[str, Any], columns: list[Json]) -> list[Json]:
+def _sensors(
+    fields: Mapping[str, str], session: Mapping[str, Any], columns: list[Json], kinds: Mapping[str, str]
+) -> list[Json]:
     """One sensor per column of readings, with known facts and those from the form."""
     known = {s.get("name"): s for s in session.get("sensors") or () if isinstance(s, dict)}
     sensor_columns = [column for column in columns if column["as"] and is_sensor(column["as"])]
@@ -269,9 +291,10 @@ def _sensors(fields: Mapping[str, str], session: Mapping[str, Any], columns: lis
     for column, axis in zip(sensor_columns, axes, strict=True):
         name = column["as"]
         sensor = {"reading_unit": column.get("unit", ""), **known.get(name, {}), "name": name}
-        written = {key: fields.get(f"sensor.{name}.{key}") for key in ("kind", "axis", "scale", "unit")}
-        if written["kind"]:
-            sensor["kind"] = written["kind"]
+        written = {key: fields.get(f"sensor.{name}.{key}") for key in ("axis", "scale", "unit")}
+        was = sensor.get("kind") or session.get("block")
+        if kinds[name] != was:
+            sensor["kind"] = kinds[name]
         if written["axis"] is not None:
             sensor["nominal_axis"] = _axis(written["axis"])
         if axis is not None:
@@ -280,8 +303,16 @@ def _sensors(fields: Mapping[str, str], session: Mapping[str, Any], columns: lis
             sensor["nominal_scale"] = _value(written["scale"])
         if written["unit"]:
             sensor["reading_unit"] = written["unit"].strip()
+        unit = column.get("unit", "")
+        if unit and conversion(unit, sensor["reading_unit"]) is None and written["unit"] == known_unit(known, name):
+            sensor = {**sensor, "reading_unit": unit, "nominal_scale": None}
         sensors.append({key: value for key, value in sensor.items() if value not in (None, "", [])})
     return sensors
+
+
+def known_unit(sensors: Mapping[Any, Mapping[str, Any]], name: str) -> str:
+    """The unit of a sensor's readings as the form showed it."""
+    return str(sensors.get(name, {}).get("reading_unit") or "")
 
 
 def _arranged(fields: Mapping[str, str], count: int) -> list[list[float] | None]:

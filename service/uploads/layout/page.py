@@ -10,21 +10,22 @@ from estimator.json_object import Json
 from estimator.message import say
 from estimator.reading.keys import COLUMNS
 from estimator.session import ACCELEROMETER, GYROSCOPE, PROGRAMMES
+from service.ingest.layout.kinds import KINDS, is_sensor, kinds_of
 from service.ingest.layout.mapping import ENCODINGS
 from service.kit.measures import number
 from service.uploads.layout.form import Carried, LayoutForm, half_angle_of, moment
-from service.uploads.layout.words import FACTS, LABELS, PLACES, RARE, said_on_page
-from service.uploads.preview import Preview, felt_length, first_rows, is_sensor
+from service.uploads.layout.words import FACTS, KINDS_CALLED, LABELS, PLACES, RARE, said_on_page
+from service.uploads.preview import Preview, felt_length, first_rows
 
 MOST_SHOWN = 30
 """Columns that are always shown; further ignored ones are behind a click."""
 NEW_SENSORS = 12
 """Offered names of sensors where none is known."""
 UNITS = (
-    "V", "mV", "µV", "mA", "µA", "count", "pulse", "m/s²", "g", "mg", "rad/s", "°/s", "°/h", "deg", "rad", "arcmin",
-    "arcsec", "s", "ms", "min", "h", "°C", "K", "°F",
+    "V", "mV", "µV", "mA", "µA", "count", "pulse", "m/s²", "g", "mg", "rad/s", "°/s", "mdeg/s", "°/h", "deg", "rad",
+    "arcmin", "arcsec", "s", "ms", "µs", "ns", "min", "h", "°C", "K", "°F",
 )  # fmt: skip
-SEPARATORS = {";": "semicolon ;", ",": "comma ,", "\t": "tab", "|": "bar |"}
+SEPARATORS = {";": "semicolon ;", ",": "comma ,", "\t": "tab", "|": "bar |", " ": "blanks"}
 DECIMALS = {".": "point 0.5", ",": "comma 0,5"}
 OFFSETS = (
     "-12:00", "-11:00", "-10:00", "-09:30", "-09:00", "-08:00", "-07:00", "-06:00", "-05:00", "-04:00", "-03:30",
@@ -51,6 +52,7 @@ class ColumnRow:
     place: int
     heading: str
     cells: tuple[str, ...]
+    kinds: tuple[Choice, ...]
     meaning: str
     choices: tuple[Choice, ...]
     unit: str
@@ -180,14 +182,16 @@ def _choices(values: Sequence[str], chosen: str) -> tuple[Choice, ...]:
 
 
 def _columns(preview: Preview) -> Iterator[ColumnRow]:
-    sensors = _sensor_names(preview)
-    for place, (source, column) in enumerate(zip(preview.seen["columns"], preview.mapping["columns"], strict=True)):
+    sensors, columns = _sensor_names(preview), preview.mapping["columns"]
+    kinds = kinds_of([column.get("as") for column in columns], preview.mapping["session"])
+    for place, (source, column) in enumerate(zip(preview.seen["columns"], columns, strict=True)):
         meaning = column.get("as") or ""
         words = column.get("words") or {}
         yield ColumnRow(
             place,
             source["heading"],
             tuple(source["cells"]),
+            tuple(Choice(kind, KINDS_CALLED[kind], kind == kinds[place]) for kind in KINDS),
             meaning,
             tuple(_meanings(meaning, sensors)),
             column.get("unit") or "",
@@ -202,8 +206,8 @@ def _sensor_names(preview: Preview) -> list[str]:
     """Known names, and new ones."""
     known = [str(s.get("name", "")) for s in preview.mapping["session"].get("sensors") or () if isinstance(s, dict)]
     used = [column["as"] for column in preview.mapping["columns"] if column.get("as") and is_sensor(column["as"])]
-    letter = "G" if preview.mapping["session"].get("block") == GYROSCOPE else "A"
-    unused = [f"{letter}{k}" for k in range(1, NEW_SENSORS + 1)]
+    letters = "GA" if preview.mapping["session"].get("block") == GYROSCOPE else "AG"
+    unused = [f"{letter}{k}" for letter in letters for k in range(1, NEW_SENSORS + 1)]
     return list(dict.fromkeys((*known, *used, *unused)))
 
 
@@ -234,6 +238,8 @@ def _taken(preview: Preview) -> Iterator[tuple[str, str, tuple[Choice, ...]]]:
 
 
 def _row_fields(table: Mapping[str, Any]) -> Iterator[FactField]:
+    if "record" in table:
+        yield FactField("record", "Rows that begin with", str(table["record"]), "text")
     for key, label in (("header_row", "Headings in row"), ("first_row", "Readings from row")):
         if key in table and "header_row" in table:
             yield FactField(key, label, str(table[key]), "numeric")

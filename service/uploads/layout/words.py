@@ -15,6 +15,12 @@ LABELS = {
     "position": "position", "direction_x": "direction x", "direction_y": "direction y", "direction_z": "direction z",
 }  # fmt: skip
 """Names of columns on this page."""
+KINDS_CALLED = {
+    "accelerometer": "accelerometer", "gyroscope": "gyroscope", "temperature": "temperature", "time": "time",
+    "angle": "angle or rate of a stand", "run": "run", "position": "position", "direction": "direction",
+    "quality": "quality of a reading", "ignored": "left out",
+}  # fmt: skip
+"""Names of kinds of columns on this page."""
 FACTS = (
     ("fact.operator", "Operator", "operator"), ("fact.notes", "Notes", "notes"),
 )  # fmt: skip
@@ -35,6 +41,7 @@ LABEL_OF = {key: label for key, label, _ in (*PLACES, *RARE)} | {
     "operator": "Operator", "notes": "Notes", "block": "Kind of sensors", "programme": "Programme",
     "stand": "Stand: name or number", "sensors": "Sensors", "table": "Table", "columns": "Columns", "file": "File",
     "table.sheet": "Sheet", "table.encoding": "Encoding", "table.separator": "Columns parted by",
+    "table.record": "Rows that begin with",
     "table.decimal": "Decimal sign", "table.header_row": "Headings in row", "table.first_row": "Readings from row",
 }  # fmt: skip
 """Names of the fields of a session and of its table's settings."""
