@@ -60,7 +60,7 @@ class KnownCombination:
 
 @dataclass(frozen=True, eq=False)
 class ForceAnswer(Document):
-    """g-sensitivity of a gyro: what it reads at the input for specific force."""
+    """g-sensitivity of a gyro: its reading for specific force, at the input."""
 
     value: Array
     """(3,) (rad/s)/(m/s²), block axes."""

@@ -24,7 +24,7 @@ from estimator.calibration.free.excess import explained
 from estimator.calibration.free.model import linearise
 from estimator.calibration.free.schedule import classified
 from estimator.hand_turns import RestDirections, TurnedLog, calibrate_turned
-from estimator.hand_turns.model import BIAS, ExtraNoise, missed, turned, weights
+from estimator.hand_turns.model import BIAS, ExtraNoise, missed, turned, upright, weights
 from estimator.session import CalibrationSession
 
 FOLDS = 5
@@ -71,7 +71,8 @@ def recorded() -> Recorded:
 def misses(log: TurnedLog, rests: RestDirections, p: Array) -> Array:
     """(2T,) rad by which whole turns miss the next rest."""
     split = weights(p[:, :BIAS], log.noise)
-    return missed(log, rests, turned(log, p, split), split.W, ExtraNoise(np.zeros(len(p)))).residual
+    went = turned(log, p, split)
+    return missed(log, upright(rests, went.lean), went, split.W, ExtraNoise(np.zeros(len(p)))).residual
 
 
 def with_zero(S: Array, beta: Array) -> Array:
@@ -83,7 +84,7 @@ def as_imu_tk(log: TurnedLog, rests: RestDirections) -> Array:
     """(3, 7) p of least squares of the turns."""
 
     def of(S: Array) -> Array:
-        """What the turns miss under S (9,)."""
+        """Misses of the turns, rad, under S (9,)."""
         return misses(log, rests, with_zero(S.reshape(3, 3), log.rest[0]))
 
     return with_zero(least_squares(of, np.eye(3).ravel()).x.reshape(3, 3), log.rest[0])

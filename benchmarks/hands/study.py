@@ -31,7 +31,7 @@ class Tried:
     squared: float
     """Normalised error squared of all parameters together."""
     times: float
-    """Of real time."""
+    """Speed in real times."""
 
 
 def of_gyros(found: Calibration) -> tuple[Array, Array, list[int]]:
@@ -50,7 +50,8 @@ def bound(truth: Truth) -> Array:
     noise = np.hypot(noise, np.repeat(world.quantum[::-1], [3, world.gyros]) / 12**0.5)
     rows: CalibrationSession = replace(
         session, readings=rests.means(truth.clean), standard_errors=noise / np.sqrt(rests.samples)[:, None],
-        position=None, sample_rate=None, rests=RawRests(truth.clean, None, world.rate, rests.start, rests.stop),
+        position=np.arange(len(rests)), sample_rate=None,
+        rests=RawRests(truth.clean, None, world.rate, rests.start, rests.stop),
     )  # fmt: skip
     covariance = known_noise(rows, float(noise[3])).known.covariance
     return np.sqrt(np.diagonal(covariance)).reshape(-1, 5)[:, [0, 1, 3, 4]]

@@ -54,7 +54,7 @@ class TurnedGyros:
     earth: Array
     """(3,) Earth's rate, rad/s, axes of the block in the first rest."""
     chi2: float
-    """Of the turns."""
+    """χ² of the turns."""
     dof: float
     """Degrees of freedom of the turns."""
     noise: ExtraNoise
@@ -138,7 +138,7 @@ def searched(search: TurnSearch) -> TurnSearch | None:
         for halving in range(HALVINGS):
             part = step / 2**halving
             trial = replace(search, p=search.p + part[:-3].reshape(search.p.shape), w=search.w + part[-3:])
-            if trial.here.chi2 < search.here.chi2 + SMALL:
+            if trial.here.chi2_under(search.here.miss) < search.here.chi2 + SMALL:
                 break
         else:
             return search if step @ gradient < 1 else None

@@ -30,6 +30,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from estimator.applied_vector import EARTH_RATE
+from estimator.arrays import unit
 from estimator.hand_turns.integrate import attitude
 from estimator.hand_turns.recording import RestDirections, TurnedLog
 from estimator.session import Array
@@ -124,6 +125,8 @@ class Turned:
     """(R − 1, 3, 3) from the block's axes at the end of each turn to those at its start."""
     at_rest: Array
     """(R, 3, 3) from the block's axes in each rest to those in the first."""
+    lean: Array
+    """(R, 3, 3) mean turn, over the samples that a rest's direction is the mean of, to the block's axes in the rest."""
     swept: Array
     """(R − 1, 3, 3, 7) Δ·Σ C_k·z_k, C_k to the axes at the start of the turn; rad, s, m/s."""
     spread: Array
@@ -143,9 +146,22 @@ def turned(log: TurnedLog, p: Array, split: Weights) -> Turned:
     return Turned(
         turn=begin @ C[log.start[1:]],
         at_rest=np.swapaxes(C[log.start[:1]], 1, 2) @ C[log.start],
+        lean=np.swapaxes(C[log.start], 1, 2) @ means(C, *log.seen),
         swept=log.step * np.einsum("tab,tbcz->tacz", begin, sums),
         spread=log.step**2 * begin @ squares @ np.swapaxes(begin, 1, 2),
     )
+
+
+def means(values: Array, start: Array, stop: Array) -> Array:
+    """(R, …) means of values (N, …), of any unit, from ``start`` to ``stop`` (R,)."""
+    padded = np.concatenate([values, np.zeros_like(values[:1])])
+    sums = np.add.reduceat(padded, np.stack([start, stop], axis=1).ravel(), axis=0)[::2]
+    return np.asarray(sums / (stop - start).reshape(-1, *[1] * (values.ndim - 1)))
+
+
+def upright(rests: RestDirections, lean: Array) -> RestDirections:
+    """The directions in the rests themselves, what a mean takes of a turn taken off; ``lean`` as in `Turned`."""
+    return replace(rests, up=unit(np.linalg.solve(np.swapaxes(lean, 1, 2), rests.up[..., None])[..., 0]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,7 +209,7 @@ def of_turns(miss: Missed) -> LikelihoodPart:
 
 
 def parity_scores(p: Array, split: Weights, products: Array) -> tuple[Array, Array, Array]:
-    """Of products (T, m + 4, m + 4): squares of the parities (T,), their slopes (T, m, 7), and Σ z·zᵀ (T, 7, 7)."""
+    """Squares of the parities (T,), their slopes (T, m, 7), and Σ z·zᵀ (T, 7, 7), of products (T, m + 4, m + 4)."""
     A = np.column_stack([np.eye(len(p)), -p[:, BIAS:]])
     Z = np.concatenate([split.W @ A, np.eye(len(A.T))[len(p) :]])
     left = A @ products @ A.T
@@ -215,9 +231,13 @@ def of_parities(log: TurnedLog, p: Array, sums: Moments, noise: ExtraNoise) -> L
 
 
 def of_rests(
-    log: TurnedLog, rests: RestDirections, at_rest: Array, p: Array, w: Array, noise: ExtraNoise
+    log: TurnedLog, rests: RestDirections, at_rest: Array, point: tuple[Array, Array], noise: ExtraNoise
 ) -> LikelihoodPart:
-    """The rests' part of the likelihood, with what is known of the Earth's rate w (3,), rad/s, axes of the first."""
+    """The rests' part of the likelihood, with what is known of the Earth's rate w (3,), rad/s, axes of the first.
+
+    at_rest : (R, 3, 3) as in `Turned`; point : as in `parts`.
+    """
+    p, w = point
     R, m = log.rest.shape
     seen = at_rest @ p[:, :BIAS].T
     residual = rest_residual(log, rests, at_rest, p, w)
@@ -265,8 +285,13 @@ class Parts:
 
     @property
     def chi2(self) -> float:
-        """Of all three."""
-        return self.rests.chi2 + self.turns.chi2 + self.parities.chi2
+        """χ² of all three."""
+        return self.chi2_under(self.miss)
+
+    def chi2_under(self, other: Missed) -> float:
+        """χ² of all three under the variance of the turns at another point, which a step may not change to its gain."""
+        turns = self.miss.residual @ np.linalg.solve(other.variance, self.miss.residual)
+        return self.rests.chi2 + float(turns) + self.parities.chi2
 
     @property
     def H(self) -> Array:
@@ -284,10 +309,11 @@ def parts(log: TurnedLog, rests: RestDirections, sums: Moments, point: tuple[Arr
     p, w = point
     split = weights(p[:, :BIAS], log.noise)
     went = turned(log, p, split)
+    rests = upright(rests, went.lean)
     still = missed(log, rests, went, split.W, noise)
     miss = replace(still, residual=still.residual + still.J[:, -3:] @ w)
     return Parts(
-        rests=of_rests(log, rests, went.at_rest, p, w, noise),
+        rests=of_rests(log, rests, went.at_rest, point, noise),
         turns=of_turns(miss),
         parities=of_parities(log, p, sums, noise),
         miss=miss,

@@ -13,6 +13,9 @@ BLOCK = 0.1
 LOUD = 25.0
 """Squared deviations per gyro, in those usual at rest, from which a block moves: five sigma, so that no quiet block of
 a recording does."""
+MARGIN = 2
+"""Blocks that are cut further: a turn begins below what a block shows, and all of it that is lost shortens every turn,
+as a scale factor does."""
 ENDS = 4
 """Part of a rest, one over this at each end, that may be cut: what moves in the middle is no end of a turn."""
 ROUNDING = 1e-9
@@ -21,8 +24,9 @@ NORMAL = 1.4826
 """Sigma of a normal number in medians of its size."""
 
 
-def quiet_ends(readings: Array, start: Array, stop: Array, step: float) -> tuple[Array, Array]:
-    """First samples (R,) and one past the last (R,) of the rests, cut where gyros see motion at their ends.
+def quiet_ends(readings: Array, start: Array, stop: Array, step: float, *, labelled: bool) -> tuple[Array, Array]:
+    """First samples (R,) and one past the last (R,) of the rests, cut where gyros see motion at their ends, and a
+    `MARGIN` further; by that alone at quiet ends, unless people ``labelled`` them.
 
     readings : (N, m) of any unit, no gaps, ``step`` seconds apart; start, stop : (R,) of the rests.
     """
@@ -31,6 +35,8 @@ def quiet_ends(readings: Array, start: Array, stop: Array, step: float) -> tuple
     usual = NORMAL * np.median(np.abs(np.concatenate(blocks)), axis=0)
     usual = np.maximum(usual, ROUNDING * np.abs(readings).max(axis=0))
     cuts = np.array([loud_ends(b, np.where(usual > 0, usual, 1.0)) for b in blocks])
+    most = (stop - start) // (ENDS * length)
+    cuts = np.where((cuts > 0) | (not labelled), np.minimum(cuts + MARGIN, most[:, None]), 0)
     return start + length * cuts[:, 0], stop - length * cuts[:, 1]
 
 

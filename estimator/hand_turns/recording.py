@@ -5,7 +5,6 @@ from functools import cached_property
 
 import numpy as np
 
-from estimator.arrays import tangents
 from estimator.session import Array
 
 Mask = np.ndarray
@@ -17,14 +16,11 @@ class RestDirections:
 
     up: Array
     """(R, 3) unit vectors, block axes."""
+    tangents: Array
+    """(R, 3, 2) along which the directions turn, dimensionless."""
     covariance: Array
-    """(2R, 2R) rad², of their turns along `tangents`, rest after rest: the readings' noise and the accelerometers'
-    parameters, which all rests share."""
-
-    @cached_property
-    def tangents(self) -> Array:
-        """(R, 3, 2) along which the directions turn, dimensionless."""
-        return tangents(self.up)
+    """(2R, 2R) rad², of these turns, rest after rest: the readings' noise and the accelerometers' parameters, which all
+    rests share."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +37,9 @@ class TurnedLog:
     """(R,) first sample of each rest."""
     stop: Array
     """(R,) one past its last."""
+    seen: tuple[Array, Array]
+    """(R,) first sample and one past the last of the rests as the directions are means over them: the same, or a little
+    of the turns with them."""
     whole: Array
     """(R − 1,) bool: turns of which no sample is missing."""
     rest: Array

@@ -65,7 +65,7 @@ def directions_of(solution: Solution, linear: Linear, R: int) -> RestDirections:
     """Directions of the first R rests with their joint covariance; ``linear`` at the solution."""
     by_parameters = turns_by_parameters(linear)[: 2 * R]
     covariance = block_diag(*linear.inverse[:R]) + by_parameters @ solution.knowledge.covariance @ by_parameters.T
-    return RestDirections(solution.unknowns.directions[:R], covariance)
+    return RestDirections(solution.unknowns.directions[:R], solution.unknowns.direction_tangents[:R], covariance)
 
 
 def turns_by_parameters(linear: Linear) -> Array:
@@ -94,7 +94,8 @@ def log_of(session: CalibrationSession, raw: RawRests, solution: Solution, live:
     gaps = np.concatenate([[0], np.cumsum(~np.isfinite(inputs).all(axis=1))])
     inputs = filled(inputs)
     step, missing = clock(raw, raw.start[:MOST], raw.stop[:MOST])
-    rests = Intervals(*quiet_ends(inputs, raw.start[:MOST], raw.stop[:MOST], step))
+    labelled = session.position is not None
+    rests = Intervals(*quiet_ends(inputs, raw.start[:MOST], raw.stop[:MOST], step, labelled=labelled))
     calm = without_stray(replace(session, readings=inputs, sensors=tuple(sensors)), rests.start, rests.stop).readings
     sigma = mean_errors(calm, rests).alone
     weightless = measured(session)[1][:MOST, gyro] > WEIGHTLESS * np.abs([s.nominal_scale for s in sensors])
@@ -105,6 +106,7 @@ def log_of(session: CalibrationSession, raw: RawRests, solution: Solution, live:
         step=step,
         start=rests.start,
         stop=rests.stop,
+        seen=(raw.start[:MOST], raw.stop[:MOST]),
         whole=(gaps[rests.start[1:]] == gaps[rests.stop[:-1]]) & (rests.start[1:] > rests.stop[:-1]) & ~missing,
         rest=rests.means(calm),
         rest_sigma=np.where(weightless, np.inf, np.hypot(sigma, [s.bias_repeatability for s in sensors])),

@@ -86,7 +86,7 @@ def fit_of_gyros(gyros: GyroBiases, element_names: tuple[str, ...]) -> Fit:
 
 
 Answers = Mapping[int, ForceAnswer | None]
-"""What gyros answer to force, by their place among the sensors."""
+"""Answers of gyros to force, by their place among the sensors."""
 
 
 def sensor_result(i: int, known: Knowledge, sigma: Array, session: CalibrationSession) -> SensorCalibration:

@@ -12,7 +12,7 @@ from tests.estimator.hand_turns import bound
 
 STEP, REST, TURN, RESTS = 0.07, 10, 14, 12
 NOISE = {ACCELEROMETER: 2e-3, GYROSCOPE: 5e-3}
-"""Of a rest's mean, m/s², and of a sample, rad/s."""
+"""One sigma of a rest's mean, m/s², and of a sample, rad/s."""
 
 
 def smooth_rates(rng):
@@ -49,7 +49,8 @@ def session(x, m):
     noise = [NOISE[ACCELEROMETER]] * 3 + [NOISE[GYROSCOPE] / REST**0.5] * m
     return CalibrationSession(
         unit="T-1", block=ACCELEROMETER, programme=ARBITRARY_ORIENTATIONS, sensors=tuple(sensors), readings=rows,
-        standard_errors=np.tile(noise, (RESTS, 1)), site=Site(latitude=np.pi / 2, gravity=bound.GRAVITY),
+        standard_errors=np.tile(noise, (RESTS, 1)), position=np.arange(RESTS),
+        site=Site(latitude=np.pi / 2, gravity=bound.GRAVITY),
         rests=RawRests(np.concatenate(samples), None, 1 / STEP, start, start + REST),
     )  # fmt: skip
 

@@ -10,6 +10,7 @@ from scipy.stats import chi2
 from benchmarks.hands.study import bound, of_gyros, tried
 from benchmarks.hands.world import World, simulated
 from estimator import calibrate
+from estimator.arrays import tangents
 from estimator.hand_turns.model import ExtraNoise, moments, parts
 from estimator.hand_turns.recording import RestDirections, TurnedLog
 
@@ -104,13 +105,17 @@ def likelihood(m=5, rests=9):
     moving = (np.arange(N) % 40 >= 10)[:, None]
     log = TurnedLog(
         readings=moving * np.sin(0.2 * np.arange(N)[:, None] + rng.uniform(0, 6, m)),
-        force=rng.standard_normal((N, 3)), step=0.05, start=start, stop=start + 10,
+        force=rng.standard_normal((N, 3)), step=0.05, start=start, stop=start + 10, seen=(start, start + 10),
         whole=np.ones(rests - 1, bool), rest=rng.normal(scale=0.01, size=(rests, m)),
         rest_sigma=np.full((rests, m), 0.01), noise=np.linspace(1, 2, m) * 1e-4,
         axes=rng.standard_normal((m, 3)), latitude=None, gravity=9.81,
     )  # fmt: skip
     up /= np.linalg.norm(up, axis=1, keepdims=True)
-    return log, RestDirections(up, 1e-6 * np.eye(2 * rests)), rng.standard_normal((m, 7)) * ([1] * 3 + [0.01] * 4)
+    return (
+        log,
+        RestDirections(up, tangents(up), 1e-6 * np.eye(2 * rests)),
+        rng.standard_normal((m, 7)) * ([1] * 3 + [0.01] * 4),
+    )
 
 
 def test_the_derivative_of_the_turns_is_the_numerical_one():
