@@ -1,4 +1,4 @@
-"""Prints the study and the recording: ``python -m benchmarks.hands > benchmarks/results/hands.md``."""
+"""Prints the study and the recording: ``python -m benchmarks.hands --logs 60 > benchmarks/results/hands.md``."""
 
 import sys
 from argparse import ArgumentParser
@@ -13,7 +13,7 @@ def main() -> None:
     parser.add_argument("--logs", type=int, default=100, help="simulated logs a row")
     parser.add_argument("--workers", type=int, default=2)
     given = parser.parse_args()
-    print("# Gyros by hand\n\nPrinted by `python -m benchmarks.hands`.")
+    print(f"# Gyros by hand\n\nPrinted by `python -m benchmarks.hands --logs {given.logs}`.")
     print("\n## Simulated hands\n")
     print(
         "40 rests of 5 s and turns of 60 to 160° within 2 to 4 s, three accelerometers (10 mm/s² a sample) and gyros\n"
