@@ -59,18 +59,28 @@ class KnownCombination:
 
 
 @dataclass(frozen=True, eq=False)
+class ForceAnswer(Document):
+    """g-sensitivity of a gyro: its reading for specific force, at the input."""
+
+    value: Array
+    """(3,) (rad/s)/(m/s²), block axes."""
+    covariance: Array
+    """(3, 3) total, ((rad/s)/(m/s²))²."""
+
+
+@dataclass(frozen=True, eq=False)
 class SensorCalibration(
     Document,
     order=(
         "name", "kind", "scale", "bias", "quadratic", "axis", "axis_sigma_arcsec", "axis_tangents", "axis_covariance",
-        "axis_dof", "axis_coverage_factor", "misalignment", "observable", "known",
+        "axis_dof", "axis_coverage_factor", "misalignment", "g_sensitivity", "observable", "known",
     ),
     keys={
         "axis": "axis.value", "axis_sigma_arcsec": "axis.sigma_arcsec", "axis_tangents": "axis.tangents",
         "axis_covariance": "axis.covariance", "axis_dof": "axis.dof", "axis_coverage_factor": "axis.coverage_factor",
         "known": "known_combinations",
     },
-    optional=("misalignment",),
+    optional=("misalignment", "g_sensitivity"),
 ):  # fmt: skip
     """Calibration of one sensor. Units: see the package page."""
 
@@ -93,6 +103,9 @@ class SensorCalibration(
     """Turn of a gyro's input axis toward the axis of a turntable (E_xz, E_yz), rad; only of sessions on one."""
     axis_dof: float | None = None
     """Effective degrees of freedom of the axis' covariance; None when the noise is known."""
+    g_sensitivity: ForceAnswer | None = None
+    """Answer of a gyro to specific force, where it was turned by hand and plainly has one; its bias is then that
+    without force."""
 
     @property
     def axis_sigma(self) -> float | None:

@@ -164,6 +164,22 @@ class SetAside(Document):
 
 
 @dataclass(frozen=True, eq=False)
+class RawRests:
+    """A raw log of N samples and where in it the rests lie whose means the R rows of an averaged session are."""
+
+    readings: Array
+    """(N, m) as in `CalibrationSession`."""
+    time: Array | None
+    """(N,) s since the start."""
+    rate: float
+    """Hz"""
+    start: NDArray[np.intp]
+    """(R,) first sample of each rest."""
+    stop: NDArray[np.intp]
+    """(R,) one past its last."""
+
+
+@dataclass(frozen=True, eq=False)
 class CalibrationSession:
     """One calibration session of one block of one unit. R rows in the order measured, m sensors.
 
@@ -213,6 +229,9 @@ class CalibrationSession:
     at_ends: Array | None = None
     """(R, m, 2) share, dimensionless, of a row's samples that read the log's very largest and smallest value of their
     channel; None unless the rows were averaged from a raw log."""
+    rests: RawRests | None = None
+    """The samples that the rows are means of, with those between; in no file. None unless the rows were averaged from
+    a raw log that is held as a whole."""
     count_time: float | None = None
     """s; set when gyro readings are pulse counts over that time."""
     counter: str | None = None

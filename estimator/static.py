@@ -22,7 +22,7 @@ from estimator.message import joined, say
 from estimator.rest_noise import Indices, waves
 from estimator.rest_tilt import MeanErrors, errors_of_means
 from estimator.screening.gaps import ends, filled, moments, noise_floor, smallest_steps, without_stray
-from estimator.session import ACCELEROMETER, Array, CalibrationSession, Sensor
+from estimator.session import ACCELEROMETER, Array, CalibrationSession, RawRests, Sensor
 
 WINDOW = 1.0
 """s over which the variance is taken: long beside the samples, short beside a rest of some seconds."""
@@ -135,6 +135,9 @@ def average(
     rows = averaged(session, intervals)
     if session is not whole:
         rows = replace(rows, at_ends=intervals.means(ends(whole.readings)))
+    assert whole.sample_rate is not None
+    rests = RawRests(whole.readings, whole.time, whole.sample_rate, intervals.start, intervals.stop)
+    rows = replace(rows, rests=rests)
     response = None if tilts is None else tilts(rows)
     if response is None:
         return rows

@@ -37,7 +37,7 @@ ESTIMATOR_LAYERS = (
     {"applied_vector", "coverage", "parameters", "reading", "rest_tilt"},
     {"curves", "static"},
     {"results"},
-    {"allan", "forward", "long_logs", "writing"},
+    {"allan", "forward", "hand_turns", "long_logs", "writing"},
     {"causes"},
     {"simulate", "calibration", "parity"},
     {"alignment", "thermal"},

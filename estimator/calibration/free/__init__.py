@@ -16,6 +16,7 @@ Source: multi-parameter optimisation paper, functional (5), in its maximum-likel
 import numpy as np
 
 from estimator.applied_vector import gravity
+from estimator.calibration.free.by_hand import gyros_by_hand, with_cross
 from estimator.calibration.free.excess import explained
 from estimator.calibration.free.gyros import GyroBiases, rest_biases
 from estimator.calibration.free.knowledge import merged, of_accelerometers, of_gyros, of_nothing
@@ -65,11 +66,10 @@ def calibrate_free(session: CalibrationSession, *, quadratic: bool | None = None
     parts = []
     if dead.any():
         parts.append((np.flatnonzero(dead), of_nothing(readings[:, dead], scale[dead], axes[dead])))
-    if gyro.any():
+    if gyro.all():
         biases = gyro_biases(session, gyro)
-        parts.append((np.flatnonzero(gyro), of_gyros(biases, scale[gyro], axes[gyro])))
-        if gyro.all():
-            return report(session, parts[0][1], fit_of_gyros(biases, names(session.sensors)), NOMINAL_AXES)
+        known = of_gyros(biases, scale, axes)
+        return report(session, known, fit_of_gyros(biases, names(session.sensors)), NOMINAL_AXES)
     g = gravity(session.site)
     rows, stated = accelerometer_rows(session, live, g)
     solution = solve(rows, stated, quadratic)
@@ -77,8 +77,15 @@ def calibrate_free(session: CalibrationSession, *, quadratic: bool | None = None
     known = of_accelerometers(used, solution.rows.sigma, scale[live], g)
     live_names = names(tuple(s for s, is_live in zip(session.sensors, live, strict=True) if is_live))
     fit = fit_of_accelerometers(solution, used, known, stated, live_names)
-    everything = merged([(np.flatnonzero(live), known), *parts])
-    return report(session, everything, fit, "directions" if rows.held else NOMINAL_AXES)
+    gauge = "directions" if rows.held else NOMINAL_AXES
+    at, gyros = np.flatnonzero(live), np.flatnonzero(gyro)
+    by_hand = gyros_by_hand(session, used, live, gyro)
+    if by_hand is not None:
+        everything = with_cross(merged([(at, known), *parts, (gyros, by_hand.known)]), gyros, at, by_hand.cross)
+        return report(session, everything, fit, gauge, dict(zip(gyros.tolist(), by_hand.answers, strict=True)))
+    if gyro.any():
+        parts.append((gyros, of_gyros(gyro_biases(session, gyro), scale[gyro], axes[gyro])))
+    return report(session, merged([(at, known), *parts]), fit, gauge)
 
 
 def residual_per_freedom(session: CalibrationSession) -> float:

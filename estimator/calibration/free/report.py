@@ -1,5 +1,7 @@
 """The `Calibration` of a block in unknown orientations, from what is known of its sensors."""
 
+from collections.abc import Mapping
+from dataclasses import replace
 from math import isfinite
 
 import numpy as np
@@ -11,7 +13,7 @@ from estimator.calibration.free.knowledge import Knowledge
 from estimator.calibration.free.solve import Solution
 from estimator.coverage import finite, positions_to_add
 from estimator.parameters import names, units
-from estimator.results import PARAMETERS, Calibration, Estimate, Fit, Residuals, SensorCalibration
+from estimator.results import PARAMETERS, Calibration, Estimate, Fit, ForceAnswer, Residuals, SensorCalibration
 from estimator.session import Array, CalibrationSession
 from estimator.significance import p_value
 
@@ -83,10 +85,12 @@ def fit_of_gyros(gyros: GyroBiases, element_names: tuple[str, ...]) -> Fit:
     )
 
 
-def sensor_result(
-    i: int, known: Knowledge, sigma: Array, turns: Array, session: CalibrationSession
-) -> SensorCalibration:
-    """The result of sensor i; ``sigma`` (m, 5), SI; ``turns`` (m, 3, 2), the axes' tangents, no unit."""
+Answers = Mapping[int, ForceAnswer | None]
+"""Answers of gyros to force, by their place among the sensors."""
+
+
+def sensor_result(i: int, known: Knowledge, sigma: Array, session: CalibrationSession) -> SensorCalibration:
+    """The result of sensor i; ``sigma`` (m, 5), SI."""
     p, sensor, elements = known.parameters, session.sensors[i], slice(5 * i + 3, 5 * i + 5)
     seen = [bool(s) for s in known.observable[i]]
     values = (float(p.scale[i]), float(p.bias[i]), float(p.quadratic[i]))
@@ -102,7 +106,7 @@ def sensor_result(
         bias=bias,
         quadratic=quadratic,
         axis=p.axis[i] if seen[3] else None,
-        axis_tangents=turns[i],
+        axis_tangents=tangents(p.axis[i]),
         axis_covariance=known.covariance[elements, elements],
         observable=dict(zip(PARAMETERS, seen, strict=False)),
         known=known.known[i],
@@ -115,14 +119,16 @@ def estimate(value: float, sigma: float, freedom: float) -> Estimate:
     return Estimate(value, sigma, sigma, finite(freedom)) if isfinite(sigma) else Estimate(value, None)
 
 
-def report(session: CalibrationSession, known: Knowledge, fit: Fit, gauge: str) -> Calibration:
+def report(
+    session: CalibrationSession, known: Knowledge, fit: Fit, gauge: str, answers: Answers | None = None
+) -> Calibration:
     """The calibration of all that is known, named."""
     sigma = np.sqrt(np.diagonal(known.covariance)).reshape(-1, 5)
-    turns = tangents(known.parameters.axis)
+    sensors = [sensor_result(i, known, sigma, session) for i in range(len(session.sensors))]
     return Calibration(
         unit=session.unit,
         method=METHOD,
-        sensors=tuple(sensor_result(i, known, sigma, turns, session) for i in range(len(session.sensors))),
+        sensors=tuple(replace(s, g_sensitivity=(answers or {}).get(i)) for i, s in enumerate(sensors)),
         names=names(session.sensors),
         units=units(session.sensors),
         covariance=known.covariance,

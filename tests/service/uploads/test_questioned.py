@@ -2,11 +2,15 @@
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 
+from benchmarks.hands.world import World, simulated
 from estimator import calibrate, read_session
+from estimator.writing import session_document
 from service.errors import ConflictError
 from service.kit.metrics import Metrics
 from service.records.changes import OTHERWISE_WRITTEN, accept_session
@@ -94,6 +98,23 @@ def test_a_slip_is_named_and_makes_neither_reference_nor_verdict(storage: Storag
         False,
     )
     assert state_of(storage, "BA-017")["BA-017"]["sessions"] == []
+
+
+@pytest.mark.parametrize(
+    ("hand", "words"),
+    [
+        (World(units=57.2958), "The scale factor of G1, G2, G3 is"),
+        (World(units=57.2958), "degrees instead of radians"),
+        (World(signs=(1.0, -1.0, 1.0)), "G2 has the wrong sign"),
+    ],
+)
+def test_gyros_turned_by_hand_tell_degrees_from_radians_and_a_lost_sign(
+    storage: Storage, hand: World, words: str
+) -> None:
+    truth = simulated(replace(hand, rests=14, rest=2.5, rate=50.0), np.random.default_rng(1))
+    document = session_document(replace(truth.session, started_at="2026-03-01T09:00:00Z"))
+    receipt = upload(storage, json.dumps(document).encode(), "hand.json", NOW)
+    assert (receipt.state, words in receipt.reason) == (RecordState.QUESTIONED, True)
 
 
 def test_readings_and_nominal_in_another_unit_than_the_units_history_are_questioned(storage: Storage) -> None:

@@ -1,0 +1,1 @@
+"""Gyros calibrated by hand: a simulated hand, the bound, and a recording beside its publication."""
