@@ -74,7 +74,7 @@ def main() -> int:
 
 
 def besieged(seconds: float) -> Seen:
-    """What is seen of a service with accounts, on SQLite."""
+    """Observations of a service with accounts, on SQLite, under attack for so many seconds."""
     seen = Seen()
     with sqlite_databases() as databases, tempfile.TemporaryDirectory(prefix="imu-siege-") as folder:
         settings = Settings(database_url=databases.migrated(), data_folder=Path(folder))

@@ -132,12 +132,11 @@ def average(
         intervals = best(session, residual)
     intervals = with_readings(session, intervals)
     whole, session = session, without_stray(session, intervals.start, intervals.stop)
-    rows = averaged(session, intervals)
-    if session is not whole:
-        rows = replace(rows, at_ends=intervals.means(ends(whole.readings)))
     assert whole.sample_rate is not None
     rests = RawRests(whole.readings, whole.time, whole.sample_rate, intervals.start, intervals.stop)
-    rows = replace(rows, rests=rests)
+    rows = replace(averaged(session, intervals), rests=rests)
+    if session is not whole:
+        rows = replace(rows, at_ends=intervals.means(ends(whole.readings)))
     response = None if tilts is None else tilts(rows)
     if response is None:
         return rows

@@ -31,6 +31,10 @@ HALVINGS = 6
 """Times that a step which raises χ² is halved."""
 ROUNDS = 4
 """Rounds of search and noise: they settle in two or three."""
+CONTRADICTED = 10.0
+"""Variance of turns or parities, in that of the recording's noise, beyond which the law does not hold (delays between
+sensors, a stepping scale, rests that are none) and no covariance can state how far off its answer is. Sound recordings
+reach three."""
 FEWEST = 5
 """Turns below which nothing is tried: two numbers each, for at least nine unknowns."""
 
@@ -101,7 +105,8 @@ class TurnSearch:
 
 
 def calibrate_turned(log: TurnedLog, rests: RestDirections) -> TurnedGyros | None:
-    """The gyros of greatest likelihood; None where the turns do not determine their scales and axes."""
+    """The gyros of greatest likelihood; None where the turns do not determine their scales and axes, or contradict any
+    scales and axes."""
     m = len(log.axes)
     if np.count_nonzero(log.whole) < FEWEST or m < BIAS or np.linalg.svd(log.axes, compute_uv=False)[-1] < PLAUSIBLE:
         return None
@@ -110,9 +115,14 @@ def calibrate_turned(log: TurnedLog, rests: RestDirections) -> TurnedGyros | Non
     )
     full = settled(begin.with_force(True))
     if full is not None and answers_to_force(full):
-        return result(full)
+        return result(full) if holds(full) else None
     plain = settled((full or begin).with_force(False))
-    return None if plain is None else result(plain)
+    return result(plain) if plain is not None and holds(plain) else None
+
+
+def holds(search: TurnSearch) -> bool:
+    """Whether turns and parities agree with the law, but for noise somewhat larger than the recording's."""
+    return max(search.noise.turns, search.noise.parities) <= CONTRADICTED
 
 
 def settled(search: TurnSearch) -> TurnSearch | None:
@@ -204,7 +214,7 @@ def unrest(residual: Array, sigma: Array, taken: int) -> float:
 
 
 def alike(one: ExtraNoise, other: ExtraNoise) -> bool:
-    """Whether two noises differ by less than a tenth, far below what a recording tells."""
+    """Whether two noises differ by less than a tenth, less than their own uncertainty in any recording."""
     first = np.array([one.turns, one.parities, *(one.unrest > 0)])
     second = np.array([other.turns, other.parities, *(other.unrest > 0)])
     near = np.abs(one.unrest - other.unrest) <= 0.1 * one.unrest
@@ -222,7 +232,7 @@ def answers_to_force(search: TurnSearch) -> bool:
 
 
 def result(search: TurnSearch) -> TurnedGyros:
-    """Everything that is told of the gyros where a search stands."""
+    """Values and covariances of the gyros at the end of a search."""
     here = search.here
     covariance = search.covariance
     gain = -covariance @ here.miss.J.T @ np.linalg.solve(here.miss.variance, here.miss.by_direction)

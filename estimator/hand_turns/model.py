@@ -9,7 +9,7 @@ A reading, in rad/s by the nominal scale, of m gyros at sample k is
 with S = K·E/K_nominal (m, 3), β the offset, G the answer to the specific force f, and noise n of variance Σ.
 
 With N·S = 0 and N·Σ·Nᵀ = 1, the rate ω̂ = W·(r − β − G·f) by weighted least squares and the parities
-p = N·(r − β − G·f) are independent and together hold everything that the sample tells. So the likelihood falls into
+p = N·(r − β − G·f) are independent and together hold all information of the sample. So the likelihood falls into
 three parts:
 
 * **Turns.** ω̂, of variance P = (Sᵀ·Σ⁻¹·S)⁻¹, carries the direction of up from one rest to the next (`integrate`). What

@@ -38,7 +38,7 @@ def far_off(log: TurnedLog, rests: RestDirections, p: Array) -> float:
 
 
 def linear(log: TurnedLog, rests: RestDirections, bias: Array) -> Array | None:
-    """(m, 3) S, dimensionless, by linear least squares; None where the turns do not tell all of it."""
+    """(m, 3) S, dimensionless, by linear least squares; None where the turns do not determine it."""
     r = np.where(log.turning[:, None], log.readings - bias, 0.0)
     basis = np.linalg.svd(r.T @ r)[0][:, :3]
     up = unit(np.where(log.turning[:, None], log.force, rests.up[0]))

@@ -69,7 +69,7 @@ def given_temperature(logs: Array, warmth: Warmth | None) -> Array:
 RECENT = 60
 """Sessions, the newest, that a history is made of; older ones hardly tell of what goes on now."""
 GOES_ON = (*DRIFTS, Kind.SETTLING)
-"""Kinds of change of which one acts where a drift is found: so the trend agrees with the change that is told."""
+"""Kinds of change of which one acts where a drift is found: so the trend agrees with the change that is shown."""
 KNOWN = 0.5
 """A level is known well enough for a forecast while its sigma is below this part of the tolerance: U = 2·u below T, as
 the decision rule asks."""

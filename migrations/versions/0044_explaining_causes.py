@@ -1,4 +1,4 @@
-"""What a diagnosis tells for flags states the causes that explain it, so that accepting one of them resolves the flag.
+"""The evidence of a diagnosis for flags states the causes that explain it, so that accepting one resolves the flag.
 
 Revision: 0044, after 0043
 """
@@ -37,15 +37,15 @@ def downgrade() -> None:
 
 def _rewrite(change: Callable[[list[Any], dict[str, Any]], list[Any]]) -> None:
     bind = op.get_bind()
-    told = sa.select(DIAGNOSES.c.session_id, DIAGNOSES.c.tells).where(DIAGNOSES.c.tells.is_not(None))
-    for id, tells in bind.execute(told).all():
-        if not tells or not any(concern[0] in OF_CAUSES for concern in tells["concerns"]):
+    kept = sa.select(DIAGNOSES.c.session_id, DIAGNOSES.c.tells).where(DIAGNOSES.c.tells.is_not(None))
+    for id, evidence in bind.execute(kept).all():
+        if not evidence or not any(concern[0] in OF_CAUSES for concern in evidence["concerns"]):
             continue
         held = bind.scalar(sa.select(DIAGNOSES.c.document).where(DIAGNOSES.c.session_id == id))
         document = {} if held is None else json.loads(zlib.decompress(held))
-        concerns = [change(c, document) if c[0] in OF_CAUSES else c for c in tells["concerns"]]
+        concerns = [change(c, document) if c[0] in OF_CAUSES else c for c in evidence["concerns"]]
         statement = sa.update(DIAGNOSES).where(DIAGNOSES.c.session_id == id)
-        bind.execute(statement.values(tells={**tells, "concerns": concerns}))
+        bind.execute(statement.values(tells={**evidence, "concerns": concerns}))
 
 
 def _explained(concern: list[Any], document: dict[str, Any]) -> list[Any]:

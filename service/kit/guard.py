@@ -68,7 +68,7 @@ def kept(keep: Callable[[str], None]) -> Iterator[None]:
     """A piece of work whose failure is kept with its reason, and then goes its way."""
     try:
         yield
-    except Exception as fault:  # any failure at all is kept with the work that failed, and raised again
+    except Exception as fault:  # raised again: any failure is first kept with the work that failed
         keep(str(fault) if isinstance(fault, FORESEEN) else AT_FAULT)
         raise
 

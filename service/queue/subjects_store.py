@@ -14,7 +14,7 @@ _GROUPS = {"unit": UnitRow.id, "type": UnitRow.unit_type_id, "stand": SessionRow
 
 
 def of_demonstration(session: Session, kind: WorkKind, keys: Collection[str]) -> frozenset[str]:
-    """Those of some pieces of work that are about nothing but units of the demonstration."""
+    """Keys of the pieces of work that concern units of the demonstration alone."""
     if not has_demonstration(session):
         return frozenset()
     if kind is WorkKind.DIAGNOSIS:

@@ -14,7 +14,7 @@ from estimator.writing import session_document
 from service.errors import NotFoundError, RefusedError
 from service.ingest import look_at, read_upload
 from service.ingest.layout.envelope import wrapped
-from service.ingest.layout.facts import Rows, completed, facts_seen, questions, told_by_rate, with_unit_of_time
+from service.ingest.layout.facts import Rows, completed, facts_seen, following_the_rate, questions, with_unit_of_time
 from service.ingest.layout.mapping import FORMAT, PER_FILE_FIELDS, fingerprint, layout_of
 from service.ingest.layout.understand import SeenColumn, understood, with_kinds
 from service.planning.pattern import earlier
@@ -66,7 +66,7 @@ def preview(
         ) from fault
     session, problems = _read(complete, content, filename)
     asked = questions(complete["session"], rows)
-    answered = {problem.field for problem in asked} | set(told_by_rate(complete["session"], rows))
+    answered = {problem.field for problem in asked} | set(following_the_rate(complete["session"], rows))
     problems = (*asked, *(problem for problem in problems if problem.field not in answered))
     return Preview(complete, fingerprint(look), is_remembered, look, session, problems)
 

@@ -44,7 +44,7 @@ class HandGyros:
 
 def gyros_by_hand(session: CalibrationSession, solution: Solution, live: Mask, gyro: Mask) -> HandGyros | None:
     """The gyros ``gyro`` (m,), by the solution of the accelerometers ``live`` (m,); None where the session holds no
-    turns, or they do not tell scales and axes."""
+    turns, or they do not determine scales and axes."""
     raw = session.rests
     if raw is None or len(raw.start) != len(session.readings) or not gyro.any():
         return None

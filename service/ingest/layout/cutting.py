@@ -78,7 +78,7 @@ def _words(line: str) -> list[str]:
 
 
 def _ending(rows: Sequence[Sequence[str]], separator: str) -> str:
-    """What stands behind each value; empty where nothing does."""
+    """Sign that follows each value beside the separator; empty where none does."""
     cells = [cell.strip() for row in rows[:SCANNED_ROWS] for cell in row if cell.strip()]
     for ending in ENDINGS:
         if ending != separator and sum(cell.endswith(ending) for cell in cells) >= EQUAL_SHARE * len(cells) > 0:

@@ -81,7 +81,7 @@ def follows_itself(triad: Array) -> bool:
 
 
 def clock_unit(time: Array) -> tuple[str, bool]:
-    """The unit of times (n,) that none is stated of, and whether it is certain; empty where the times tell nothing."""
+    """The unit of times (n,) that none is stated of, and whether it is certain; empty where no unit fits."""
     step = usual_step(time)
     if len(time) < SAMPLES or step == 0:
         return "", False
@@ -151,12 +151,12 @@ def _turns_over(accelerometers: Array, gyros: Array, span: int) -> TurnFactors |
 
 def _regressed(design: Array, change: Array) -> TurnFactors | None:
     information = np.einsum("ij,ij->j", design, design)
-    told = information > SHARE * information.max()
+    seen = information > SHARE * information.max()
     if not information.max() > 0:
         return None
-    known, *_ = np.linalg.lstsq(design[:, told], change, rcond=None)
-    residual = change - design[:, told] @ known
+    known, *_ = np.linalg.lstsq(design[:, seen], change, rcond=None)
+    residual = change - design[:, seen] @ known
     explained = 1 - float(residual @ residual) / float(change @ change)
     factors = np.full(3, np.median(known))
-    factors[told] = known
+    factors[seen] = known
     return TurnFactors(factors, explained) if explained >= EXPLAINED else None

@@ -1,5 +1,5 @@
-"""What a table's columns and values say of its session: programme, sample rate, and the kind, unit, scale and axis of
-each sensor."""
+"""Facts of a session from its table's columns and values: programme, sample rate, and the kind, unit, scale and axis
+of each sensor."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, TypeVar
@@ -214,7 +214,7 @@ def _turned(sensors: Sequence[Json], turns: TurnFactors, rate: float, *, is_whol
 
 
 def questions(session: Mapping[str, Any], table: Rows) -> tuple[Problem, ...]:
-    """What must be asked although the session could be read without it."""
+    """Contradictions of kind, unit and sign, which are asked although the session could be read without an answer."""
     sensors, problems = _sensors_of(session), []
     for number, sensor in enumerate(sensors, start=1):
         kind, unit = str(sensor.get("kind") or session.get("block")), str(sensor.get("reading_unit") or "")
@@ -251,7 +251,7 @@ def _contradicted(session: Mapping[str, Any], sensors: Sequence[Mapping[str, Any
             yield Problem(f"sensors[{number}].reading_unit", text)
 
 
-def told_by_rate(session: Mapping[str, Any], table: Rows) -> Iterator[str]:
+def following_the_rate(session: Mapping[str, Any], table: Rows) -> Iterator[str]:
     """Fields that follow once the unit of time or the rate of a log is stated: the rate, and by the turns units and
     scale factors of gyros."""
     sensors = _sensors_of(session)

@@ -26,9 +26,9 @@ MOST_WORDS = 12
 LONGEST_CELL = 60
 """Characters of a cell that are shown."""
 MOST_VALUES = 20_000
-"""First values of a column from which its meaning is told: some minutes of a log."""
+"""First values of a column that are looked at for its meaning: some minutes of a log."""
 MOST_CELLS = 400_000
-"""Of all columns together."""
+"""Values that are looked at, of all columns together."""
 MOSTLY = 0.5
 """Share of numbers from which a column counts as numeric."""
 

@@ -35,7 +35,7 @@ class Sense:
     group: tuple[str, ...]
     """The other words, which the axes of one device share."""
     unit: str
-    """As it stands in the heading."""
+    """Unit as the heading writes it; empty where it has none."""
 
     @property
     def letter(self) -> str:
@@ -73,14 +73,14 @@ def sense_of(name: str, unit: str) -> Sense | None:
 
 
 def _kind(words: list[str], group: tuple[str, ...]) -> str | None:
-    """By the beginning of a word, or of words as one; by a short word next to an axis, single letters first of all."""
+    """Kind of sensor, by the beginning of a word or of the words run together, or by a short word next to an axis."""
     compact = "".join(words)
     for kind, beginnings in BEGINNINGS.items():
         for beginning in beginnings.split():
             if beginning in compact if len(beginning) > 8 else any(word.startswith(beginning) for word in words):
                 return kind
-    told = [word for k, word in enumerate(group) if k == 0 or len(word) >= SHORTEST_WORD]
-    return next((kind for word in told for kind, short in SHORT.items() if word in short.split()), None)
+    candidates = [word for k, word in enumerate(group) if k == 0 or len(word) >= SHORTEST_WORD]
+    return next((kind for word in candidates for kind, short in SHORT.items() if word in short.split()), None)
 
 
 def _fused(name: str) -> tuple[str, str, tuple[str, ...]] | None:

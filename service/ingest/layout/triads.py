@@ -72,7 +72,7 @@ def found_in(
     groups: dict[tuple[str | None, tuple[str, ...], str], dict[int, Sense]] = {}
     for k, sense in senses.items():
         groups.setdefault((sense.kind, sense.group if sense.place else (), sense.unit), {})[k] = sense
-    triads = [_told(SensorTriad(kind, group, unit), values, table) for (kind, _, unit), group in groups.items()]
+    triads = [_with_facts(SensorTriad(kind, group, unit), values, table) for (kind, _, unit), group in groups.items()]
     found: dict[int, FoundSensor | None] = dict.fromkeys(senses)
     for kind in LETTERS:
         for number, triad in enumerate(_apart([t for t in triads if t.kind == kind], values), start=1):
@@ -104,7 +104,7 @@ def without_headings(values: Mapping[int, Array | None]) -> dict[int, FoundSenso
     return found | {k: FoundSensor(f"G{'XYZ'[i]}", GYROSCOPE, "") for i, k in enumerate(best)}
 
 
-def _told(triad: SensorTriad, values: Mapping[int, Array | None], table: str) -> SensorTriad:
+def _with_facts(triad: SensorTriad, values: Mapping[int, Array | None], table: str) -> SensorTriad:
     """The triad with its kind and unit, as far as its values tell; without a kind where it is none."""
     readings = values_of(values, triad.places)
     if triad.kind is None:

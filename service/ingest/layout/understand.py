@@ -42,7 +42,7 @@ LABELS = (
 MOVES = 0.2
 """Share of the rows with another value than the row before from which a quantity of many rows is no label."""
 MANY_ROWS = 200
-"""Rows from which that can be told: a stand has fewer settings."""
+"""Rows from which that shows: a stand has fewer settings."""
 
 
 @dataclass(frozen=True)
@@ -112,8 +112,8 @@ def with_kinds(
 def _sense(column: SeenColumn) -> Sense | None:
     """The sensor that a heading names; none of a column of texts, or with a meaning of its own."""
     name, unit = split_unit(column.heading)
-    is_told = column.meaning or _plain(name) in (*BY_WORD, *ASIDE) or {*words_of(name)} & {*ERROR_WORDS}
-    if column.empty or not column.numeric or is_told:
+    is_named = column.meaning or _plain(name) in (*BY_WORD, *ASIDE) or {*words_of(name)} & {*ERROR_WORDS}
+    if column.empty or not column.numeric or is_named:
         return None
     return sense_of(name, unit)
 

@@ -75,6 +75,16 @@ def test_rests_are_found_where_none_is_labelled():
         assert one.scale.value == pytest.approx(other.scale.value, abs=3 * one.scale.sigma)
 
 
+@pytest.mark.parametrize("late", [20, 40])
+def test_gyros_that_lag_behind_one_another_give_no_scale_factors(late):
+    truth, _ = calibrated(SHORT)
+    readings = truth.session.readings.copy()
+    readings[late:, 4] = readings[:-late, 4]
+    found = calibrate(replace(truth.session, readings=readings))
+    assert [s.scale.value for s in found.sensors[3:]] == [None] * 3
+    assert np.isfinite([s.bias.value for s in found.sensors[3:]]).all()
+
+
 def test_a_turn_with_missing_samples_takes_no_part():
     truth, _ = calibrated(SHORT)
     readings = truth.session.readings.copy()

@@ -1,8 +1,6 @@
 """A sensor that begins to fail in a recording in service makes its unit unfit, and every answer says so alike."""
 
 import json
-import os
-from pathlib import Path
 from typing import Any
 
 import httpx
@@ -10,11 +8,11 @@ import pytest
 
 from tests.conftest import Holding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
+from tests.public_cases import CASES
 from tests.service.faulty_recordings import SPOILT, faulty_bytes
 from tests.service.made_sessions import session_bytes, session_id
 from tests.service.recordings import recording_bytes
 
-CASES = Path(os.environ.get("IMU_HEALTH_CASES", Path(__file__).parents[4] / "shared" / "cases"))
 CASE = CASES / "fault-begins-in-service"
 SINCE = "since 09:02:00 UTC (120 s into the recording)"
 STUCK = f"A3 has stood still {SINCE}: replace or repair A3, and check its channel and its plug."

@@ -207,14 +207,14 @@ def test_an_earlier_diagnosis_is_given_the_causes_that_explain_its_flags(store_u
     storage.database.close()
     engine = open_engine(store_url)
 
-    def told() -> Any:
+    def evidence() -> Any:
         with engine.connect() as connection:
             return connection.scalars(select(DiagnosisRow.tells)).one()
 
-    since = told()
+    since = evidence()
     assert any(len(concern) > len(("matter", "place", "severity", "summary")) for concern in since["concerns"])
     downgrade(store_url, "0043")
-    assert {len(concern) for concern in told()["concerns"]} == {4}
+    assert {len(concern) for concern in evidence()["concerns"]} == {4}
     upgrade(store_url)
-    assert told() == since
+    assert evidence() == since
     engine.dispose()

@@ -1,9 +1,7 @@
 """Raw logs of six axes in layouts of many loggers: what the preview says of their columns, rows and rate."""
 
 import json
-from collections import Counter
 from io import BytesIO
-from pathlib import Path
 from typing import Any
 
 import h5py
@@ -146,7 +144,7 @@ def test_a_gyro_of_the_other_sign_is_proposed_against_its_axis(client: httpx.Cli
     assert (axes["GX"], axes["GY"], axes["GZ"]) == ([1, 0, 0], [0, -1, 0], [0, 0, 1])
 
 
-def test_columns_without_headings_are_told_by_gravity_and_its_turns(client: httpx.Client) -> None:
+def test_columns_without_headings_are_recognised_by_gravity_and_its_turns(client: httpx.Client) -> None:
     content = written([clock("t", seconds), *triad(xyz("*"), HANDS.turning), *triad(xyz("*"), HANDS.force)])
     found = previewed(client, b"\n".join(content.splitlines()[1:]))
     assert [column["kind"] for column in found["columns"]] == ["time", *["gyroscope"] * 3, *["accelerometer"] * 3]
@@ -370,40 +368,3 @@ def test_structures_of_matlab_7_3_are_columns(client: httpx.Client) -> None:
     content = b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(512, b"\0") + buffer.getvalue()[512:]
     meanings, rate = read_as(client, content, "log.mat")
     assert (sorted(map(str, meanings)), rate) == (["A1", "A2", "A3", "G1", "G2", "G3", "time_s"], 100.0)
-
-
-CASES = Path("/work/shared/cases/makers-tables/files")
-ACCELEROMETERS, SIX_AXES = {"accelerometer": 3}, {"accelerometer": 3, "gyroscope": 3}
-MAKERS: dict[str, tuple[dict[str, int], set[str], set[str]]] = {
-    "actigraph.csv": (ACCELEROMETERS, {"g"}, set()),
-    "betaflight.csv": (SIX_AXES, {"count", "°/s"}, set()),
-    "euroc.csv": (SIX_AXES, {"m/s²", "rad/s"}, set()),
-    "flysight.csv": (SIX_AXES, {"g", "°/s"}, set()),
-    "gyro_long.csv": ({"gyroscope": 1}, {"°/s"}, {"sample_rate_hz", "sensors", "sensors[1].nominal_axis"}),
-    "imu0.log": (SIX_AXES, {"m/s²", ""}, {"sample_rate_hz"}),
-    "kalibr.csv": (SIX_AXES, {"m/s²", "rad/s"}, set()),
-    "matrix.mat": (SIX_AXES, {"m/s²", "rad/s"}, set()),
-    "mtmanager.txt": (SIX_AXES, {"m/s²", ""}, {"sample_rate_hz"}),
-    "phyphox.csv": (ACCELEROMETERS, {"m/s²"}, set()),
-    "physicstoolbox.csv": (ACCELEROMETERS, {"g"}, set()),
-    "picoquake.csv": (SIX_AXES, {"g", "°/s"}, set()),
-    "sensorlogger.csv": (ACCELEROMETERS, {"m/s²"}, set()),
-    "shimmer.csv": (SIX_AXES, {"m/s²", "°/s"}, set()),
-    "struct.mat": (ACCELEROMETERS, {"m/s²"}, set()),
-    "v73.mat": (ACCELEROMETERS, {"m/s²"}, set()),
-    "witmotion.txt": (SIX_AXES, {"g", "°/s"}, set()),
-    "ximu3.csv": (SIX_AXES, {"g", "°/s"}, set()),
-}
-"""Kinds, units and questions of makers' files; all of them have 100 Hz."""
-
-
-@pytest.mark.skipif(not CASES.exists(), reason="the makers' files are not part of the project")
-@pytest.mark.parametrize("name", MAKERS)
-def test_files_of_makers_ask_one_question_at_most(client: httpx.Client, name: str) -> None:
-    found = previewed(client, (CASES / name).read_bytes(), name)
-    session, (kinds, units, asked) = found["mapping"]["session"], MAKERS[name]
-    assert Counter(sensor["kind"] for sensor in session["sensors"]) == kinds
-    assert {sensor["reading_unit"] for sensor in session["sensors"]} == units
-    assert fields(found) - FACTS_OF_EVERY_LOG == asked
-    assert session["programme"] == "arbitrary-orientations"
-    assert ("sample_rate_hz" in asked) or session["sample_rate_hz"] == pytest.approx(100.0)

@@ -1,4 +1,4 @@
-"""Without processes beside the requests the pages of the fleet still wait for no computation about the whole of it."""
+"""Pages of the fleet answer without waiting for its summaries where no process works beside the requests."""
 
 from datetime import UTC, datetime
 from functools import partialmethod
