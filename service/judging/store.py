@@ -323,13 +323,19 @@ def _diagnosis_evidence(document: dict[str, list[list[Any]]] | None, is_undecide
 def _evidence(document: dict[str, list[list[Any]]] | None) -> FlagEvidence | None:
     if document is None:
         return None
-    concerns = tuple(
-        Concern(Matter(str(matter)), str(place), int(severity), with_messages(summary), **_explained(*explained))
-        for matter, place, severity, summary, *explained in document["concerns"]
-    )
+    concerns = tuple(_concern(*concern) for concern in document["concerns"])
     clear = tuple((str(matter), str(place), with_messages(why)) for matter, place, why in document["clear"])
     return FlagEvidence(concerns, clear)
 
 
-def _explained(causes: Sequence[str] = (), sensors: Sequence[Sequence[str]] = ()) -> dict[str, Any]:
-    return {"causes": tuple(causes), "sensors": tuple((name, kind) for name, kind in sensors)}
+def _concern(
+    matter: str, place: str, severity: int, summary: Any, causes: Sequence[str] = (), sensors: Sequence[list[str]] = ()
+) -> Concern:
+    return Concern(
+        Matter(matter),
+        place,
+        severity,
+        with_messages(summary),
+        causes=tuple(causes),
+        sensors=tuple((name, kind) for name, kind in sensors),
+    )

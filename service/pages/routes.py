@@ -26,6 +26,7 @@ from service.models.store import Models
 from service.outlook.reading import dated
 from service.outlook.rules.populations import fleet_standouts
 from service.outlook.store import Outlooks
+from service.pages.courses import HISTORY_LIMIT
 from service.pages.fleet.pages import MOST_STANDOUTS, fleet_page
 from service.pages.fleet.view import FleetView
 from service.pages.session.pages import session_page
@@ -64,8 +65,6 @@ from service.work.dependencies import JobDeskOf, ReaderOf, ReadingFleet
 
 MOST_QUESTIONED = 20
 """Sessions that the fleet page names; the latest."""
-HISTORY_LIMIT = 10_000
-"""Points of one parameter's history that a page draws, of the newest sessions: 1,600 of six sensors, 200 of 48."""
 FLAG_LIMIT = 50
 """Flags of a unit that its page lists: open ones, then the newest of those that are resolved."""
 

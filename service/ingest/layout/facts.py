@@ -175,7 +175,7 @@ def _scale(unit: str, kind: str) -> float | None:
 
 
 def _triads(session: Json, by_kind: Mapping[str, list[Json]], table: Rows) -> None:
-    """Axes along x, y and z of three sensors of a kind, with the units and signs that their values tell; a unit of some
+    """Axes along x, y and z of three sensors of a kind, with the units and signs that their values show; a unit of some
     is that of all."""
     felt = table.triad(by_kind[ACCELEROMETER])
     turned = table.triad(by_kind[GYROSCOPE])

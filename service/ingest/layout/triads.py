@@ -105,7 +105,7 @@ def without_headings(values: Mapping[int, Array | None]) -> dict[int, FoundSenso
 
 
 def _with_facts(triad: SensorTriad, values: Mapping[int, Array | None], table: str) -> SensorTriad:
-    """The triad with its kind and unit, as far as its values tell; without a kind where it is none."""
+    """The triad with its kind and unit, as far as its values show them; without a kind where it is none."""
     readings = values_of(values, triad.places)
     if triad.kind is None:
         felt = None if readings is None or len(triad.senses) != AXES else gravity_unit(gravity_at_rest(readings))
