@@ -73,6 +73,11 @@ class SensorFields:
     scale: str
     unit: str
 
+    @property
+    def is_backwards(self) -> bool:
+        """Whether it is a gyro whose input axis points against one of the block's axes."""
+        return self.kind == GYROSCOPE and sorted(self.axis.split()) == ["-1.0", "0.0", "0.0"]
+
 
 @dataclass(frozen=True)
 class FactField:

@@ -139,9 +139,12 @@ def test_first_rows_of_a_log_are_in_si(client: httpx.Client, layout: str) -> Non
 def test_a_gyro_of_the_other_sign_is_proposed_against_its_axis(client: httpx.Client) -> None:
     columns = [clock("t [s]", seconds), *triad(("ax", "ay", "az"), HANDS.force)]
     turning = HANDS.turning * [1.0, -1.0, 1.0]
-    found = previewed(client, written([*columns, *triad(("wx", "wy", "wz"), turning)]))
+    content = written([*columns, *triad(("wx", "wy", "wz"), turning)])
+    found = previewed(client, content)
     axes = {sensor["name"]: sensor["nominal_axis"] for sensor in found["mapping"]["session"]["sensors"]}
     assert (axes["GX"], axes["GY"], axes["GZ"]) == ([1, 0, 0], [0, -1, 0], [0, 0, 1])
+    page = client.post("/upload/layout", files={"file": ("log.csv", content)}, headers={"Accept": "text/html"}).text
+    assert "GY: by the turns in the log these gyros run against the accelerometers" in " ".join(page.split())
 
 
 def test_columns_without_headings_are_recognised_by_gravity_and_its_turns(client: httpx.Client) -> None:
