@@ -10,17 +10,17 @@ from benchmarks.files.service import Cost
 from estimator.long_logs.average import MOST_RESTS
 from service.ingest import LONG
 from service.ingest.apart import PACE
+from service.ingest.layout.sampling import HEAD, PLACES
 from service.jobs.records import KEPT as KEPT_MADE
 from service.kit.limits import LARGE, SMALL
 from service.storage.aside import MOST, MOST_BYTES, RETENTION
 from service.storage.landing import IN_MEMORY
 from service.storage.waiting import JOB_DELAY
-from service.uploads.layout.form import MOST_CARRIED
 
 RETRY = "503 with `Retry-After`"
 LIMITS = {
     "whole": ("bytes of an upload, but for raw logs", "413"),
-    "log": ("bytes of a raw log, as CSV or Parquet", "413"),
+    "log": ("bytes of a raw log, as text or Parquet", "413"),
     "attached": ("bytes of a file that is attached", "413"),
     "rows": ("rows of a table", "422"),
     "columns": ("columns of a table", "422"),
@@ -104,7 +104,8 @@ def _long(long: Sequence[LongLog]) -> str:
 A raw log (`sample_rate_hz`) of more cells than that, as CSV or Parquet, is averaged to its positions while it is
 scanned (`estimator/long_logs`), in constant memory and with the same result as a log in one
 piece. Up to {MOST_RESTS:,} positions. As JSON, XLSX, HDF5 or MAT a log is read
-whole.
+whole, and so is a Parquet file of custom layout. To propose how a text of custom layout is read, its first
+{HEAD // MEBIBYTE} MiB and {PLACES} later places are looked at.
 
 Medians of three; memory of the reading process over idle.
 
@@ -124,7 +125,7 @@ On one disk, in the folder `files` of the data folder:
 | `arriving` | uploads beyond {IN_MEMORY // 1024} KiB while they arrive | until the request ends | no |
 | `waiting` | acknowledged large files that a [job](../how-to/long-work.md#a-large-log) is to read | until the job \
 ends: then stored under its hash, or removed | yes, so that after a restore the job continues |
-| `aside` | tables of custom layout of more than {MOST_CARRIED // MEBIBYTE} MiB, while their sender confirms on a page \
+| `aside` | tables of custom layout of more than {IN_MEMORY // 1024} KiB, while their sender confirms on a page \
 how they are read; only that account continues with them | until stored, at most {RETENTION // hour} hours after the \
 page was last shown; {MOST} of an account and {MOST_BYTES // MEBIBYTE // 1024} GiB of all, the oldest are removed \
 first | no: send it again |

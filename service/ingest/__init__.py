@@ -3,10 +3,10 @@
 Binary formats, and text long enough to take time or memory, are read in a separate process: see `apart`.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from estimator.errors import Problem, SessionError
 from estimator.json_object import Json
@@ -31,22 +31,25 @@ LONG = 1024 * 1024
 
 
 @outside_writing
-def read_upload(content: bytes | Path, filename: str) -> CalibrationSession:
-    """The session in the content or file; SessionError with every problem under the file's name.
+def read_upload(content: bytes | Path, filename: str, mapping: Mapping[str, Any] | None = None) -> CalibrationSession:
+    """The session in the content or file, under the mapping of a table of custom layout; SessionError with every
+    problem under the file's name.
 
     A raw log with more cells than the limit is returned as its averaged positions.
     """
     require_table(content, filename)
-    if isinstance(content, Path) or _is_apart(content):
-        return apart_session(content, filename)
+    if mapping is not None or isinstance(content, Path) or _is_apart(content):
+        return apart_session(content, filename, "session", mapping)
     return read_session(content, name=filename, most=in_force().extent)
 
 
-def read_first_rows(content: bytes | Path, filename: str) -> CalibrationSession:
+def read_first_rows(
+    content: bytes | Path, filename: str, mapping: Mapping[str, Any] | None = None
+) -> CalibrationSession:
     """The first rows of a session, which need not be enough for its programme; samples of a raw log as they are."""
     require_table(content, filename)
-    if isinstance(content, Path) or _is_apart(content):
-        return apart_session(content, filename, "first-rows")
+    if mapping is not None or isinstance(content, Path) or _is_apart(content):
+        return apart_session(content, filename, "first-rows", mapping)
     return read_session(content, name=filename, most=in_force().extent, part=True)
 
 
@@ -65,17 +68,20 @@ def _is_apart(content: bytes) -> bool:
     return is_binary(content) or len(content) > LONG
 
 
-def apart_session(content: bytes | Path, filename: str, job: str = "session") -> CalibrationSession:
+def apart_session(
+    content: bytes | Path, filename: str, job: str = "session", mapping: Mapping[str, Any] | None = None
+) -> CalibrationSession:
     """The session, read in a separate process."""
-    session = read_apart(job, content, filename)
+    session = read_apart(job, content, filename, mapping)
     assert isinstance(session, CalibrationSession)
     return session
 
 
-def look_at(content: bytes | Path, filename: str) -> Json:
-    """Preview of a table of custom layout; ``session`` is true where the file is a session file."""
+def look_at(content: bytes | Path, filename: str, mapping: Mapping[str, Any] | None = None) -> Json:
+    """Preview of a table of custom layout; ``session`` is true where the file is a session file. Of a long text only
+    its beginning and some later rows are read."""
     require_table(content, filename)
-    preview: Json = read_apart("look", content, filename)
+    preview: Json = read_apart("look", content, filename, mapping)
     return preview
 
 

@@ -13,7 +13,7 @@ import struct
 import subprocess
 import sys
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import asdict, replace
@@ -108,8 +108,8 @@ SHORTEST = 5
 """Seconds of computing allowed for the smallest file: the largest table that may be unpacked from it takes four."""
 SLOWEST = 500_000
 """Bytes per extra second of computing, up to the limit in force: a third of the speed of reading a workbook."""
-PACE = 20_000_000
-"""Bytes per extra second of reading a file on disk: a fifth of the speed of reading CSV."""
+PACE = 5_000_000
+"""Bytes per extra second of reading a file on disk: a third of the speed of the slowest text, with times of day."""
 GRACE = 5.0
 """Seconds past its limit after which the process, which should have ended itself, is taken for lost."""
 PATIENCE = 10.0
@@ -130,11 +130,12 @@ PROCESS_ENDED = (OSError, EOFError, *DAMAGED)
 """Raised when a fork ends before its answer."""
 
 
-def read_apart(job: str, content: bytes | Path, filename: str) -> Any:
-    """Result of the job on the content; SessionError for an unusable file, BusyError where it must wait."""
+def read_apart(job: str, content: bytes | Path, filename: str, mapping: Mapping[str, Any] | None = None) -> Any:
+    """Result of the job on the content, under the mapping of a table of custom layout; SessionError for an unusable
+    file, BusyError where it must wait."""
     most = limits_of_file(content)
     with turn(), _refused_if_process_ended(filename, most):
-        return _read_again_if_server_ended(job, content, filename, most)
+        return _read_again_if_server_ended({"job": job, "filename": filename, "mapping": mapping}, content, most)
 
 
 def read_parts(job: str, path: Path, filename: str) -> Iterator[Any]:
@@ -179,25 +180,21 @@ def turn() -> Iterator[None]:
         yield
 
 
-def _read_again_if_server_ended(job: str, content: bytes | Path, filename: str, limit: Limits) -> Any:
+def _read_again_if_server_ended(request: Json, content: bytes | Path, limit: Limits) -> Any:
     """Reads once more where the fork server itself was ended from outside: the file is not to blame."""
     try:
-        return _read(job, content, filename, limit)
+        return _read(request, content, limit)
     except PROCESS_ENDED as error:
         if isinstance(error, SessionError) or not _server.has_ended():
             raise
-    return _read(job, content, filename, limit)
+    return _read(request, content, limit)
 
 
-def _read(job: str, content: bytes | Path, filename: str, most: Limits) -> Any:
+def _read(request: Json, content: bytes | Path, most: Limits) -> Any:
     with _server.fork() as child:
         child.settimeout(most.seconds * WALL_CLOCK_FACTOR + GRACE)
         listener = progress_listener()
-        _ask(
-            child,
-            {"job": job, "filename": filename, "limits": asdict(most), "reports_progress": listener is not None},
-            content,
-        )
+        _ask(child, request | {"limits": asdict(most), "reports_progress": listener is not None}, content)
         return _answer(child, _answer_line(child, listener), most)
 
 

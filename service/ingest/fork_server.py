@@ -98,7 +98,7 @@ def _read(connection: socket.socket, request: Json) -> Iterator[Packed]:
             yield pack(part)
         yield Packed(END, ())
     else:
-        yield pack(jobs.JOBS[request["job"]](content, filename))
+        yield pack(jobs.JOBS[request["job"]](content, filename, request["mapping"]))
 
 
 def _report_progress(connection: socket.socket, done: int, times: int) -> None:

@@ -38,3 +38,10 @@ def is_binary(start: bytes) -> bool:
 def may_be_log(start: bytes) -> bool:
     """Whether the first bytes are those of a format that can be scanned: Parquet, or CSV with its metadata."""
     return start.startswith(PARQUET) or start.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"#")
+
+
+def may_be_long(start: bytes) -> bool:
+    """Whether the first bytes are those of a format that can be read in parts: Parquet, or rows of text."""
+    return start.startswith(PARQUET) or not (
+        is_binary(start) or start.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] in (b"", b"{", b"[")
+    )

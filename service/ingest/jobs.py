@@ -6,17 +6,19 @@ from pathlib import Path
 
 import polars as pl
 
+from estimator.json_object import Json
 from estimator.reading import read_session
 from estimator.screening import Screen
 from estimator.session import CalibrationSession
 from service.ingest import hdf5, mat, parquet, xlsx
-from service.ingest.formats import HDF5, LOGS, MAT, PARQUET, XLSX
-from service.ingest.layout.envelope import is_wrapped, unwrapped
+from service.ingest.formats import HDF5, LOGS, MAT, PARQUET, XLSX, is_binary, start_of
+from service.ingest.layout.envelope import StoredTable, is_wrapped, unwrapped
 from service.ingest.layout.look import look
 from service.ingest.layout.mapping import layout_of
 from service.ingest.layout.reading import document_of
+from service.ingest.layout.sampling import Sample, sample_of
 from service.ingest.logs import log_of
-from service.ingest.long_log import UNREADABLE, TableScan, averaged_if_long, numbers, rows_of
+from service.ingest.long_log import START, UNREADABLE, TableScan, averaged_if_long, numbers, rows_of
 from service.ingest.metadata import with_metadata
 from service.ingest.parquet import columns_of
 from service.kit.limits import check_table, in_force, refusal
@@ -81,23 +83,23 @@ READERS: tuple[tuple[bytes, Reader], ...] = (
 """First bytes of a binary format, and what reads it; anything else is JSON or CSV, or refused as neither."""
 
 
-def session(content: Content, filename: str) -> object:
+def session(content: Content, filename: str, mapping: Json | None = None) -> object:
     """The checked session of a file of any format; of a long raw log its averaged positions."""
-    if isinstance(content, Path):
-        averaged = averaged_if_long(content, filename)
-        return _read(_whole(content, filename), filename) if averaged is None else averaged
-    return _read(content, filename)
+    averaged = averaged_if_long(content, filename, mapping) if isinstance(content, Path) else None
+    return _read(_whole(content, filename), filename, mapping) if averaged is None else averaged
 
 
-def first_rows(content: Content, filename: str) -> object:
+def first_rows(content: Content, filename: str, mapping: Json | None = None) -> object:
     """The first rows of a session, checked except for whether they are enough for its programme."""
-    return _read(_whole(content, filename) if isinstance(content, Path) else content, filename, part=True)
+    sample = None if mapping is None else _sample(content)
+    return _read(_whole(content, filename) if sample is None else sample.head, filename, mapping, part=True)
 
 
-def _read(content: bytes, filename: str, *, part: bool = False) -> object:
+def _read(content: bytes, filename: str, mapping: Json | None = None, *, part: bool = False) -> object:
     if is_wrapped(content):
-        mapping, table = unwrapped(content, filename)
-        document, where, found = document_of(table, filename, layout_of(mapping, filename))
+        mapping, content = unwrapped(content, filename)
+    if mapping is not None:
+        document, where, found = document_of(content, filename, layout_of(mapping, filename))
         session = read_session(document, name=filename, most=in_force().extent, part=part, where=where)
         return replace(session, screening=(*found, *session.screening))
     if content.startswith(XLSX):
@@ -112,8 +114,17 @@ def _read(content: bytes, filename: str, *, part: bool = False) -> object:
     return read_session(content, name=filename, most=in_force().extent, part=part)
 
 
-def _whole(path: Path, filename: str) -> bytes:
-    size, limit = path.stat().st_size, in_force().whole
+def _sample(content: Content) -> Sample | None:
+    """The first and some later rows of a long text; None of any other file."""
+    if isinstance(content, bytes) or is_binary(start_of(content, START)):
+        return None
+    return sample_of(StoredTable(content, 0, content.stat().st_size))
+
+
+def _whole(content: Content, filename: str) -> bytes:
+    if isinstance(content, bytes):
+        return content
+    size, limit = content.stat().st_size, in_force().whole
     if size > limit:
         raise refusal(
             filename,
@@ -121,21 +132,20 @@ def _whole(path: Path, filename: str) -> bytes:
             size=f"{size:,}",
             limit=f"{limit:,}",
         )
-    return path.read_bytes()
+    return content.read_bytes()
 
 
-def mat_matrices(content: Content, filename: str) -> object:
+def mat_matrices(content: Content, filename: str, _: Json | None = None) -> object:
     """All variables of a MAT file, with up to three rows or columns."""
-    whole = _whole(content, filename) if isinstance(content, Path) else content
-    return mat.variables(whole, filename, most_rows=3)
+    return mat.variables(_whole(content, filename), filename, most_rows=3)
 
 
-def look_at(content: Content, filename: str) -> object:
+def look_at(content: Content, filename: str, mapping: Json | None = None) -> object:
     """Preview of a table of custom layout."""
-    return look(_whole(content, filename) if isinstance(content, Path) else content, filename)
+    return look(_sample(content) or _whole(content, filename), filename, mapping)
 
 
-JOBS: dict[str, Callable[[Content, str], object]] = {
+JOBS: dict[str, Callable[[Content, str, Json | None], object]] = {
     "session": session,
     "first-rows": first_rows,
     "look": look_at,

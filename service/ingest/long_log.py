@@ -12,6 +12,7 @@ import polars as pl
 
 from estimator.calibration.free import residual_per_freedom, tilt_response
 from estimator.errors import FormatError, Problem, ScheduleError, SessionError
+from estimator.json_object import Json
 from estimator.long_logs import LongLog, average_long
 from estimator.reading import Extent, read_session
 from estimator.reading.csv_text import cell_of
@@ -21,6 +22,9 @@ from estimator.screening import Screen, Screening
 from estimator.session import CALIBRATIONS, Array, CalibrationSession
 from service.ingest.apart import progress_reporter
 from service.ingest.formats import PARQUET, may_be_log
+from service.ingest.layout.envelope import StoredTable, is_wrapped, table_in
+from service.ingest.layout.mapping import layout_of
+from service.ingest.layout.scanning import TextRows, long_text
 from service.ingest.metadata import KEY, with_metadata
 from service.ingest.parquet import columns_of
 from service.kit.limits import check_table, in_force, refusal
@@ -59,6 +63,9 @@ class TableScan(Protocol):
     def stretches(self, names: Sequence[str]) -> Iterator[pl.DataFrame]:
         """Some columns, some rows at a time; polars' errors for a malformed table."""
 
+    def where(self, field: str, row: int | None) -> str:
+        """Place in the file of a field in one of the last rows; empty where unknown."""
+
 
 def rows_of(path: Path, filename: str) -> TableScan | None:
     """The table of a CSV or Parquet file; None for any other."""
@@ -67,6 +74,14 @@ def rows_of(path: Path, filename: str) -> TableScan | None:
     if not may_be_log(head):
         return None
     return parquet_rows(path, filename) if head.startswith(PARQUET) else csv_rows(path, filename)
+
+
+def mapped_rows(path: Path, filename: str, mapping: Json | None) -> TextRows | None:
+    """The rows of a long text under its mapping, be that in the file or beside it; None for any other file."""
+    table = StoredTable(path, 0, path.stat().st_size)
+    if is_wrapped(path):
+        mapping, table = table_in(path, filename)
+    return None if mapping is None else long_text(table, filename, layout_of(mapping, filename))
 
 
 @dataclass(frozen=True)
@@ -90,6 +105,10 @@ class ParquetRows:
             yield frame
             rows_read += len(frame)
             progress_reporter().report(size * rows_read // total, size)
+
+    def where(self, field: str, row: int | None) -> str:
+        """Nothing: the row is named already."""
+        return ""
 
 
 def parquet_rows(path: Path, filename: str) -> ParquetRows:
@@ -133,6 +152,10 @@ class CsvRows:
             yield self._read(text, names)
             done += len(text)
             progress_reporter().report(done, size)
+
+    def where(self, field: str, row: int | None) -> str:
+        """Nothing: the row is named already."""
+        return ""
 
     def _read(self, text: bytes, names: Sequence[str]) -> pl.DataFrame:
         """Whole lines; numbers with blanks around them are parsed separately, and invalid ones are kept as texts."""
@@ -197,9 +220,9 @@ LABEL, SETTINGS = "position", ("beta_deg", "run")
 """Columns of the block's orientation."""
 
 
-def averaged_if_long(path: Path, filename: str) -> CalibrationSession | None:
+def averaged_if_long(path: Path, filename: str, mapping: Json | None = None) -> CalibrationSession | None:
     """The averaged positions of a long raw log in a file; None for any other file, which is read whole."""
-    rows = rows_of(path, filename)
+    rows = mapped_rows(path, filename, mapping) or rows_of(path, filename)
     if rows is None:
         return None
     limits, columns = in_force(), len(rows.names)
@@ -332,7 +355,10 @@ class _Scan:
         """The rows from ``offset`` on; every problem names its row of the whole log."""
         whole = {**self.document, "table": table}
         try:
-            return read_session(whole, name=self.filename, most=Extent(), part=True, screen=screen)
+            return read_session(
+                whole, name=self.filename, most=Extent(), part=True, screen=screen,
+                where=lambda field, row: self.rows.where(field, row and row + offset),
+            )  # fmt: skip
         except FormatError as fault:
             problems = [Problem(p.field, p.message, p.row and p.row + offset) for p in fault.problems]
             raise FormatError(problems, self.filename) from fault

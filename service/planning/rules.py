@@ -14,8 +14,7 @@ from estimator.readiness import Readiness, readiness
 from estimator.session import CalibrationSession
 from service.errors import NotFoundError, RefusedError
 from service.ingest import in_turn, read_first_rows, read_upload
-from service.ingest.layout.envelope import wrapped
-from service.kit.arriving_files import held, where
+from service.kit.arriving_files import where
 from service.kit.measures import leading_kind
 from service.planning.pattern import completed, earlier, sensors_of, why_not
 from service.planning.question import PlanQuestion, ReadyQuestion
@@ -73,10 +72,10 @@ def missing_of(file: SentFile, positions: int | None, *, both_runs: bool) -> Mis
     """The positions and uncertainties still to come; RefusedError with every problem where the file cannot be read so
     far.
     """
-    content = where(file.content) if file.mapping is None else wrapped(file.mapping, held(file.content))
+    content = where(file.content)
     try:
         with in_turn(content):
-            return missing(read_upload(content, file.filename), positions, both_runs=both_runs)
+            return missing(read_upload(content, file.filename, file.mapping), positions, both_runs=both_runs)
     except SessionError as fault:
         raise RefusedError(say("{filename} cannot be read so far.", filename=file.filename), fault.problems) from fault
 
@@ -100,10 +99,10 @@ class Asked:
 
 def readiness_of(storage: Storage, file: SentFile, asked: ReadyQuestion) -> Asked:
     """Ready or not; RefusedError with every problem where the file cannot be read."""
-    content = where(file.content) if file.mapping is None else wrapped(file.mapping, held(file.content))
+    content = where(file.content)
     try:
         with in_turn(content):
-            return _answered(storage, read_first_rows(content, file.filename), asked)
+            return _answered(storage, read_first_rows(content, file.filename, file.mapping), asked)
     except SessionError as fault:
         raise RefusedError(say("{filename} cannot be read so far.", filename=file.filename), fault.problems) from fault
 

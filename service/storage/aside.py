@@ -18,7 +18,7 @@ RETENTION = timedelta(hours=12)
 MOST = 10
 """Most tables of one account: a new one replaces the oldest."""
 MOST_BYTES = 1024**3
-"""Most bytes of all accounts."""
+"""Most bytes of all accounts, beside the newest table."""
 OWNER_DIGITS = 16
 """Digits of the hash of a login, which may hold any character."""
 
@@ -39,20 +39,14 @@ def set_aside(files: Files, owner: str, content: Content, now: datetime) -> str:
     return digest
 
 
-def aside(files: Files, owner: str, digest: str, now: datetime) -> bytes | None:
+def aside(files: Files, owner: str, digest: str, now: datetime) -> Landed | None:
     """A table of an account; None where it has expired or was replaced by others."""
     path = _path(files, owner, digest)
     if path not in _fresh(files, now):
         return None
-    try:
-        content = path.read_bytes()
-    except OSError:
-        return None
-    if content_hash(content) != digest:
-        return None
     with disk_faults():
         _touch(path, now)
-    return content
+        return Landed(path, digest, path.stat().st_size)
 
 
 def drop_aside(files: Files, owner: str, digest: str) -> None:
@@ -75,9 +69,9 @@ def _make_room(files: Files, owner: str, now: datetime) -> None:
     drop_stale(files, now)
     count, size = 0, 0
     with disk_faults():
-        for path in sorted(_all(files), key=_age, reverse=True):
+        for place, path in enumerate(sorted(_all(files), key=_age, reverse=True)):
             count += path.name.startswith(_prefix(owner))
-            size += _access(path)[1]
+            size += _access(path)[1] if place else 0
             if size > MOST_BYTES or (count > MOST and path.name.startswith(_prefix(owner))):
                 path.unlink(missing_ok=True)
 

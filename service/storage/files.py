@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
-from hashlib import file_digest, sha256
+from hashlib import sha256
 from pathlib import Path
 
 from service.errors import DamagedError, NotFoundError
@@ -11,7 +11,7 @@ from service.kit.arriving_files import Content, Landed
 from service.kit.log import log
 from service.storage.faults import disk_faults
 from service.storage.folders import PART, make_folder, named_durably, named_in, sweep, sync_folder, written_whole
-from service.storage.landing import IN_MEMORY, Landings, landings
+from service.storage.landing import IN_MEMORY, Landings, file_hash, landings
 
 LOST = (NotFoundError, DamagedError)
 """Raised on reading a stored file that is missing or damaged."""
@@ -20,12 +20,6 @@ LOST = (NotFoundError, DamagedError)
 def content_hash(content: Content) -> str:
     """SHA-256, 64 hexadecimal digits."""
     return content.sha256 if isinstance(content, Landed) else sha256(content).hexdigest()
-
-
-def file_hash(path: Path) -> str:
-    """The SHA-256 of a file, hexadecimal, without holding it in memory."""
-    with path.open("rb") as file:
-        return file_digest(file, "sha256").hexdigest()
 
 
 def no_op(_: str) -> None:

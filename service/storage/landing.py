@@ -2,7 +2,7 @@
 
 import fcntl
 import hashlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from tempfile import NamedTemporaryFile
@@ -21,6 +21,12 @@ START = 64
 """Bytes: more than the signature of any format, blank lines before the metadata of a CSV included."""
 ARRIVING = "arriving"
 """Folder of arriving files, on the disk of the stored ones, so that a file is stored by renaming it."""
+
+
+def file_hash(path: Path) -> str:
+    """The SHA-256 of a file, hexadecimal, without holding it in memory."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 class Landing:
@@ -65,6 +71,16 @@ class Landing:
         if self._waiting:
             self.write()
         return Landed(Path(self._file.name), self._hash.hexdigest(), self.size)
+
+    def made(self, make: Callable[[IO[bytes]], None]) -> Landed:
+        """The file that is made in its place."""
+        self.write()
+        assert self._file is not None
+        with disk_faults():
+            make(self._file)
+            self._file.flush()
+            path = Path(self._file.name)
+            return Landed(path, file_hash(path), path.stat().st_size)
 
     def close(self) -> None:
         """Removes the file, unless it was stored and has another name by now.

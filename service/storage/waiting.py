@@ -8,8 +8,9 @@ from pathlib import Path
 from service.errors import DamagedError
 from service.kit.arriving_files import Content, Landed
 from service.storage.faults import disk_faults
-from service.storage.files import Files, file_hash
+from service.storage.files import Files
 from service.storage.folders import is_name, make_folder, named_durably, named_in, sync_folder, written_whole
+from service.storage.landing import file_hash
 
 FOLDER = "waiting"
 """Next to the folders of the uploads, whose names are two hexadecimal digits."""

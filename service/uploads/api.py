@@ -16,7 +16,7 @@ from service.errors import NotFoundError
 from service.ingest.layout.kinds import KINDS, kinds_of
 from service.jobs.records import Job, JobKind, under_way
 from service.jobs.store import Jobs
-from service.kit.arriving_files import held
+from service.kit.arriving_files import where
 from service.kit.limits import in_force
 from service.kit.person import Person
 from service.languages.language import asked
@@ -224,7 +224,12 @@ UnitType = Annotated[Sought, Query(description="The last session of this stored 
 def preview_layout(file: FileOf, storage: StorageOf, unit: Unit = "", unit_type: UnitType = "") -> PreviewSchema:
     """The reading of a table of custom layout, by the recognised mapping or by `mapping`. Nothing is stored."""
     result = preview(
-        storage, held(file.content), file.filename, mapping=file.mapping, unit=unit.strip(), unit_type=unit_type.strip()
+        storage,
+        where(file.content),
+        file.filename,
+        mapping=file.mapping,
+        unit=unit.strip(),
+        unit_type=unit_type.strip(),
     )
     look, session = result.seen, result.session
     kinds = kinds_of([column.get("as") for column in result.mapping["columns"]], result.mapping["session"])

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,8 +13,7 @@ from estimator.message import say
 from estimator.session import CalibrationSession
 from estimator.writing import session_document
 from service.errors import NotFoundError, RefusedError
-from service.ingest import look_at, read_upload
-from service.ingest.layout.envelope import wrapped
+from service.ingest import look_at, read_first_rows, read_upload
 from service.ingest.layout.facts import Rows, completed, facts_seen, following_the_rate, questions, with_unit_of_time
 from service.ingest.layout.mapping import FORMAT, PER_FILE_FIELDS, fingerprint, layout_of
 from service.ingest.layout.understand import SeenColumn, understood, with_kinds
@@ -46,11 +46,17 @@ class Preview:
 
 
 def preview(
-    storage: Storage, content: bytes, filename: str, *, mapping: Mapping[str, Any] | None, unit: str, unit_type: str
+    storage: Storage,
+    content: bytes | Path,
+    filename: str,
+    *,
+    mapping: Mapping[str, Any] | None,
+    unit: str,
+    unit_type: str,
 ) -> Preview:
     """Preview of a table; RefusedError for another file or an invalid mapping."""
     try:
-        look = look_at(content if mapping is None else wrapped(mapping, content), filename)
+        look = look_at(content, filename, mapping)
         if look["session"]:
             raise RefusedError(KNOWN, (Problem("file", KNOWN),))
         is_remembered = False
@@ -64,7 +70,7 @@ def preview(
         raise RefusedError(
             say("{filename} cannot be read as a table. Nothing was stored.", filename=filename), fault.problems
         ) from fault
-    session, problems = _read(complete, content, filename)
+    session, problems = _read(complete, content, filename, is_part=look["sampled"])
     asked = questions(complete["session"], rows)
     answered = {problem.field for problem in asked} | set(following_the_rate(complete["session"], rows))
     problems = (*asked, *(problem for problem in problems if problem.field not in answered))
@@ -136,10 +142,10 @@ def _columns_for(look: Mapping[str, Any], mapping: Mapping[str, Any]) -> list[An
 
 
 def _read(
-    mapping: Mapping[str, Any], content: bytes, filename: str
+    mapping: Mapping[str, Any], content: bytes | Path, filename: str, *, is_part: bool
 ) -> tuple[CalibrationSession | None, tuple[Problem, ...]]:
     try:
-        return read_upload(wrapped(mapping, content), filename), ()
+        return (read_first_rows if is_part else read_upload)(content, filename, mapping), ()
     except SessionError as fault:
         return None, fault.problems
 

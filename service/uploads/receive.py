@@ -16,14 +16,14 @@ from service.errors import RefusedError
 from service.ingest import in_turn, look_at, said_as_table
 from service.ingest.checked import Checked, check, plain_filename
 from service.ingest.digest import content_digest
-from service.ingest.layout.envelope import wrapped
+from service.ingest.layout.envelope import wrap, wrapped
 from service.ingest.layout.mapping import fingerprint, layout_of, remembered
 from service.jobs.changes import NO_HOOKS, UploadHooks
 from service.judging.calibrate import Calibrated, basis_of, calibrate
 from service.judging.origin import require_one_origin
 from service.judging.plausible import doubts
 from service.judging.reference import KnownUnit, known_unit
-from service.kit.arriving_files import DEMONSTRATION, Content, held, where
+from service.kit.arriving_files import DEMONSTRATION, Content, where
 from service.kit.copying import copied
 from service.models.rules import model_for
 from service.queue.records import WorkKind
@@ -44,6 +44,7 @@ from service.sessions.store import Sessions
 from service.storage import Storage
 from service.storage.audit import Audit
 from service.storage.files import content_hash
+from service.storage.landing import Landings
 from service.storage.queries import Store
 from service.types.design import of_its_design
 from service.types.rules import type_of
@@ -319,18 +320,26 @@ NO_TABLE = "is given with a session file, which needs none; send it without a ma
 def receive_mapped(reception: Reception, file: SentFile, mapping: Mapping[str, Any], now: datetime) -> Receipt:
     """Stores the bytes, unchanged, with the mapping; RefusedError where they give no session."""
     complete, layout = _complete(file, mapping)
-    receipt = receive(reception, replace(file, content=wrapped(complete, held(file.content))), now)
+    with reception.storage.files.arriving() as place:
+        receipt = receive(reception, replace(file, content=_wrapped(place, complete, file.content)), now)
     with reception.storage.database.writing() as store:
         unit_type = UnitTypes(store).of_unit(receipt.unit).name
         Layouts(store).remember(layout, unit_type, remembered(complete), who=reception.who, at=now)
     return receipt
 
 
+def _wrapped(place: Landings, mapping: Mapping[str, Any], content: Content) -> Content:
+    """The bytes with their mapping; of a long file in another one."""
+    if isinstance(content, bytes):
+        return wrapped(mapping, content)
+    return place.new().made(lambda file: wrap(mapping, content.path, file))
+
+
 def _complete(file: SentFile, mapping: Mapping[str, Any]) -> tuple[Json, str]:
     """The mapping with all settings of the parser, so that the file is always read in the same way."""
     try:
         layout_of(mapping, file.filename)
-        look = look_at(wrapped(mapping, held(file.content)), file.filename)
+        look = look_at(where(file.content), file.filename, mapping)
     except SessionError as fault:
         raise RefusedError(
             say("{filename} cannot be read by this mapping.", filename=file.filename), fault.problems

@@ -16,7 +16,7 @@ from estimator.errors import Problem, SessionError, problem_at
 from estimator.json_object import Json
 from estimator.message import say
 from service.errors import ForbiddenError, RefusedError, TooLargeError
-from service.ingest.formats import may_be_log
+from service.ingest.formats import may_be_long
 from service.ingest.layout.envelope import mapping_of
 from service.kit.arriving_files import Content, held
 from service.kit.limits import in_force
@@ -73,7 +73,7 @@ class Arriving:
     async def take(self, landing: Landing, data: bytes) -> None:
         """The next part of a file; TooLargeError above the limit of its format."""
         landing.take(data)
-        limit = self.most if may_be_log(landing.start) else self._whole
+        limit = self.most if may_be_long(landing.start) else self._whole
         if landing.size > limit:
             raise TooLargeError(
                 "An upload may hold {limit} bytes at a time; this one is larger. Average or split it.",

@@ -108,7 +108,7 @@ def record_of(rows: Sequence[Sequence[Cell]]) -> str:
 def of_record(rows: Sequence[Sequence[Cell]], record: str) -> list[list[Cell]]:
     """The headings, units and readings of one kind of record without its name; longer rows of headings by their end."""
     own = [list(row[1:]) for row in rows if _name(row) == record]
-    readings = [row for row in own if any(map(_is_number, row))]
+    readings = readings_of(rows, record)
     width = Counter(map(len, readings)).most_common(1)[0][0] if readings else 0
     named = [
         list(row[-width:])
@@ -116,6 +116,11 @@ def of_record(rows: Sequence[Sequence[Cell]], record: str) -> list[list[Cell]]:
         if len(row) > width + 1 and _name(row) != record and any(_name([cell]) == record for cell in row[1:-width])
     ]
     return named + [row for row in own if row not in readings] + readings
+
+
+def readings_of(rows: Sequence[Sequence[Cell]], record: str) -> list[list[Cell]]:
+    """The readings of one kind of record without its name."""
+    return [list(row[1:]) for row in rows if _name(row) == record and any(map(_is_number, row[1:]))]
 
 
 def _name(row: Sequence[Cell]) -> str:

@@ -17,7 +17,7 @@ UTF16_ZEROS = 0.2
 
 def decoded(content: bytes, filename: str, chosen: str | None = None) -> tuple[str, str]:
     """The text, and its encoding."""
-    encoding = chosen or _encoding(content)
+    encoding = chosen or encoding_of(content)
     try:
         return content.decode(encoding).lstrip("\ufeff"), encoding.removesuffix("-sig")
     except (UnicodeDecodeError, LookupError) as error:
@@ -26,7 +26,8 @@ def decoded(content: bytes, filename: str, chosen: str | None = None) -> tuple[s
         raise refusal(filename, "is not {encoding} text; choose another encoding", encoding=encoding) from error
 
 
-def _encoding(content: bytes) -> str:
+def encoding_of(content: bytes) -> str:
+    """The encoding of a text by its bytes."""
     for mark, encoding in MARKS:
         if content.startswith(mark):
             return encoding

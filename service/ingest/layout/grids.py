@@ -15,8 +15,9 @@ from estimator.screening import Screening
 from service.ingest import hdf5, logs, mat, parquet
 from service.ingest.foreign import require_table
 from service.ingest.formats import HDF5, MAT, PARQUET, XLSX
-from service.ingest.layout.cutting import SCANNED_ROWS, Cell, cut, of_record, record_of, separator_of
+from service.ingest.layout.cutting import SCANNED_ROWS, Cell, cut, of_record, readings_of, record_of, separator_of
 from service.ingest.layout.decoding import decoded
+from service.ingest.layout.sampling import Sample
 from service.ingest.layout.titles import stated_in
 from service.ingest.layout.understand import joined, split_unit
 from service.ingest.layout.vocabulary import unit_of
@@ -61,11 +62,17 @@ class Grid:
     """Findings in the samples of a log before they were put into rows."""
     skipped: frozenset[int] = frozenset()
     """Rows, from 0, that repeat the headings or are a title among the readings."""
+    following: int | None = None
+    """Rows that follow one another, of a sample; None where all rows are here."""
+    repeated: Sequence[Sequence[Cell]] = ()
+    """Rows of its headings, which may come again below."""
+    unseen: int = 0
+    """Rows of the file that are not here."""
 
     @property
     def rows(self) -> int:
         """Number of rows of readings."""
-        return max(map(len, self.columns), default=0)
+        return max(map(len, self.columns), default=0) + self.unseen
 
     def place(self, column: int, row: int) -> str:
         """Place of a cell in the file; rows count from 1."""
@@ -76,9 +83,11 @@ class Grid:
         return say("line {line} of the file", line=line) if self.kind == "text" else ""
 
 
-def grid_of(content: bytes, filename: str, stated: Mapping[str, Any], declined: Collection[str] = ()) -> Grid:
+def grid_of(content: bytes | Sample, filename: str, stated: Mapping[str, Any], declined: Collection[str] = ()) -> Grid:
     """The table in a file; ``stated``: the settings of ``taken`` that were chosen by hand; ``declined``: what a log is
     not screened for."""
+    if isinstance(content, Sample):
+        return _sampled(content, filename, stated)
     require_table(content, filename)
     if content.startswith(XLSX):
         return _workbook(content, filename, stated)
@@ -113,17 +122,28 @@ def is_nothing(cell: Cell) -> bool:
     return cell is None or (isinstance(cell, str) and cell.strip().casefold() in NOTHING)
 
 
-def _text(content: bytes, filename: str, stated: Mapping[str, Any]) -> Grid:
+def _text(content: bytes, filename: str, stated: Mapping[str, Any], later: bytes = b"") -> Grid:
+    """The table of a text; ``later``: lines from anywhere below."""
     text, encoding = decoded(content, filename, stated.get("encoding"))
     lines = text.replace("\r\n", "\n").replace("\r", "\n")
     separator = str(stated.get("separator") or separator_of(lines))
     rows = cut(lines, separator, filename)
     taken = {"encoding": encoding, "separator": separator}
     record = str(stated["record"]) if "record" in stated else record_of(rows)
+    below = cut(later.decode(encoding, "replace").replace("\r", ""), separator, filename)
     if record:
-        rows, taken = of_record(rows, record), {**taken, "record": record}
+        rows, below, taken = of_record(rows, record), readings_of(below, record), {**taken, "record": record}
+    following, rows = len(rows), [*rows, *below]
     check_table(filename, len(rows), max(map(len, rows), default=0))
-    return _headed("text", rows, taken, stated, filename)
+    grid = _headed("text", rows, taken, stated, filename)
+    return replace(grid, following=following - int(grid.taken["first_row"]) + 1) if below else grid
+
+
+def _sampled(sample: Sample, filename: str, stated: Mapping[str, Any]) -> Grid:
+    grid = _text(sample.head, filename, stated, sample.later)
+    seen = sample.head.count(b"\n") + sample.later.count(b"\n")
+    share = grid.rows / (seen - int(grid.taken["first_row"]) + 1) if "record" in grid.taken else 1.0
+    return replace(grid, unseen=round(share * (sample.lines - seen)))
 
 
 def _workbook(content: bytes, filename: str, stated: Mapping[str, Any]) -> Grid:
@@ -196,7 +216,8 @@ def _headed(
     decimal = str(stated.get("decimal") or _decimal(columns))
     settings = {"decimal": decimal, "header_row": header, "first_row": first + 1}
     titles = stated_in(rows[: max(header - 1, 0)] if header else rows[:first])
-    return Grid(kind, headings, columns, {**taken, **settings}, sheets, titles=titles, skipped=skipped)
+    above = rows[header - 1 : first] if header else ()
+    return Grid(kind, headings, columns, {**taken, **settings}, sheets, titles=titles, skipped=skipped, repeated=above)
 
 
 def _skipped(rows: list[list[Cell]], header: int, first: int, filename: str) -> frozenset[int]:
@@ -206,7 +227,7 @@ def _skipped(rows: list[list[Cell]], header: int, first: int, filename: str) -> 
         if _has_words(rows[j]) and rows[j] not in headings and _names_columns(rows, j) and _is_heading(rows[j]):
             text = say("has another table from row {row} on; put every table on a sheet of its own", row=j + 1)
             raise refusal(filename, text, "table")
-    return frozenset(j - first for j in range(first, len(rows)) if rows[j] in headings or _is_title(rows[j]))
+    return frozenset(j - first for j in range(first, len(rows)) if rows[j] in headings or is_title(rows[j]))
 
 
 def _has_words(row: Sequence[Cell]) -> bool:
@@ -224,7 +245,7 @@ def _is_words(cell: Cell) -> bool:
     return not is_nothing(cell) and number_of(cell, ",") is None
 
 
-def _is_title(row: Sequence[Cell]) -> bool:
+def is_title(row: Sequence[Cell]) -> bool:
     """Whether a row is one text alone."""
     filled = [cell for cell in row if not is_nothing(cell)]
     return len(filled) == 1 and _is_words(filled[0])

@@ -10,10 +10,11 @@ from estimator.message import say
 from service.ingest import hdf5, mat, parquet
 from service.ingest.formats import HDF5, LOGS, MAT, PARQUET, XLSX
 from service.ingest.layout.cutting import Cell
-from service.ingest.layout.envelope import is_wrapped, unwrapped
+from service.ingest.layout.envelope import is_wrapped
 from service.ingest.layout.grids import Grid, grid_of, is_nothing, number_of
 from service.ingest.layout.mapping import layout_of
 from service.ingest.layout.reading import seconds_of, word_text
+from service.ingest.layout.sampling import Sample
 from service.ingest.xlsx import session_sheets, sheet_names
 from service.kit.limits import refusal
 
@@ -34,7 +35,8 @@ MOSTLY = 0.5
 
 
 def is_session(content: bytes, filename: str) -> bool:
-    """Whether a file claims to be imu-session/1, rightly or wrongly, or cannot be a table at all."""
+    """Whether a file claims to be imu-session/1, rightly or wrongly, or cannot be a table at all. Of a text the
+    beginning is enough."""
     if is_wrapped(content):
         return True
     if content.startswith(XLSX):
@@ -51,15 +53,12 @@ def is_session(content: bytes, filename: str) -> bool:
     return not head or head[:1] in b"{[" or (head[:1] == b"#" and head.lstrip(b"# \t")[:1] == b"{")
 
 
-def look(content: bytes, filename: str) -> object:
+def look(content: bytes | Sample, filename: str, mapping: Json | None = None) -> object:
     """Preview of a table, with the settings of its mapping where it has one."""
-    table, stated = content, Json()
-    if is_wrapped(content):
-        document, table = unwrapped(content, filename)
-        stated = dict(layout_of(document, filename).table)
-    if is_session(table, filename):
+    stated = {} if mapping is None else layout_of(mapping, filename).table
+    if is_session(content.head if isinstance(content, Sample) else content, filename):
         return {"session": True}
-    grid = grid_of(table, filename, stated)
+    grid = grid_of(content, filename, stated)
     if len(grid.headings) > MOST_COLUMNS:
         parts = {"headings": len(grid.headings), "most_columns": MOST_COLUMNS}
         text = say("has {headings} columns; a mapping takes at most {most_columns}; remove those not needed", **parts)
@@ -70,6 +69,7 @@ def look(content: bytes, filename: str) -> object:
         "taken": dict(grid.taken),
         "sheets": list(grid.sheets),
         "rows": grid.rows,
+        "sampled": isinstance(content, Sample),
         "columns": [_column(heading, cells, grid) for heading, cells in zip(grid.headings, grid.columns, strict=True)],
         "facts": dict(grid.facts),
         "titles": dict(grid.titles),
@@ -78,9 +78,11 @@ def look(content: bytes, filename: str) -> object:
 
 def _column(heading: str, cells: Any, grid: Grid) -> Json:
     decimal = str(grid.taken.get("decimal", "."))
+    following = len(cells) if grid.following is None else grid.following
+    following -= sum(j < following for j in grid.skipped)
     cells = [cell for j, cell in enumerate(cells) if j not in grid.skipped]
     filled = [cell for cell in cells if not is_nothing(cell)]
-    first_cells = cells[: min(MOST_VALUES, MOST_CELLS // len(grid.headings))]
+    first_cells = cells[: min(following, MOST_VALUES, MOST_CELLS // len(grid.headings))]
     values = [None if is_nothing(cell) else number_of(cell, decimal) for cell in first_cells]
     numbers = sum(value is not None for value in values)
     holds_numbers = bool(filled) and numbers >= MOSTLY * sum(not is_nothing(cell) for cell in first_cells)

