@@ -22,7 +22,6 @@ from service.people import account_pages, admin_pages
 from service.people.admission import ADMITTED
 from service.people.oidc import pages as oidc_pages
 from service.planning import pages as plan_pages
-from service.planning import readiness_pages as before_pages
 from service.records import pages as records
 from service.uploads import arrivals_pages
 from service.uploads.layout import pages as layouts
@@ -34,7 +33,7 @@ from service.work import pages as work
 
 PARTS = (
     routes, due, account_pages, admin_pages, papers, diagnoses, flags, layouts, models, records,
-    remarks, oidc_pages, before_pages, plan_pages, sessions, stands, types, arrivals_pages, help, work,
+    remarks, oidc_pages, plan_pages, sessions, stands, types, arrivals_pages, help, work,
     assets,
 )  # fmt: skip
 """Modules with routes of pages."""

@@ -8,6 +8,7 @@ import polars as pl
 
 from estimator.json_object import Json
 from estimator.reading import read_session
+from estimator.reading.problems import Where
 from estimator.screening import Screen
 from estimator.session import CalibrationSession
 from service.ingest import hdf5, mat, parquet, xlsx
@@ -99,11 +100,13 @@ def _read(content: bytes, filename: str, mapping: Json | None = None, *, part: b
     if is_wrapped(content):
         mapping, content = unwrapped(content, filename)
     if mapping is not None:
-        document, where, found = document_of(content, filename, layout_of(mapping, filename))
+        document, where, found = document_of(content, filename, layout_of(mapping, filename), part=part)
         session = read_session(document, name=filename, most=in_force().extent, part=part, where=where)
         return replace(session, screening=(*found, *session.screening))
     if content.startswith(XLSX):
         document, where = xlsx.read_with_places(content, filename)
+        if part:
+            document, where = _measured(document, where)
         return read_session(document, name=filename, most=in_force().extent, part=part, where=where)
     for magic, read in READERS:
         if content.startswith(magic):
@@ -112,6 +115,17 @@ def _read(content: bytes, filename: str, mapping: Json | None = None, *, part: b
         log_of(content, filename)
         raise refusal(filename, NO_MAPPING)
     return read_session(content, name=filename, most=in_force().extent, part=part)
+
+
+def _measured(document: dict[str, object], where: Where) -> tuple[dict[str, object], Where]:
+    """The document without the rows of a workbook that are yet to be measured."""
+    table, sensors = document.get("table"), document.get("sensors")
+    if not isinstance(table, dict) or not isinstance(sensors, list) or document.get("sample_rate_hz") is not None:
+        return document, where
+    read = [table[name] for one in sensors if isinstance(one, dict) and (name := one.get("name")) in table]
+    rows = [j for j, cells in enumerate(zip(*read, strict=False)) if any(cell is not None for cell in cells)]
+    kept = {name: [cells[j] for j in rows if j < len(cells)] for name, cells in table.items()}
+    return {**document, "table": kept}, lambda field, row: where(field, row and rows[row - 1] + 1)
 
 
 def _sample(content: Content) -> Sample | None:

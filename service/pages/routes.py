@@ -54,9 +54,9 @@ from service.units.remarks_store import SaidOf
 from service.units.store import Register, Units
 from service.uploads.correct import remedies_of
 from service.uploads.layout.form import carried
-from service.uploads.pages import job_outcome, outcome_of, outcomes_of, table_outcome, upload_page
+from service.uploads.pages import job_outcome, looked_at, outcome_of, outcomes_of, table_outcome, upload_page
 from service.uploads.receive import receive_all
-from service.uploads.received import FormFiles
+from service.uploads.received import ChosenOf
 from service.uploads.take_in import is_long
 from service.web.application import application_of
 from service.web.dependencies import Now, Reading, SettingsOf
@@ -205,7 +205,7 @@ def show_upload(request: Request, store: Reading, settings: SettingsOf) -> HTMLR
 @router.post("/upload")
 def take_uploads(
     request: Request,
-    files: FormFiles,
+    chosen: ChosenOf,
     reception: ReceptionOf,
     settings: SettingsOf,
     now: Now,
@@ -213,10 +213,12 @@ def take_uploads(
     person: PersonOf,
 ) -> HTMLResponse:
     """Shows the form with the verdict of each file, or its problems; 422 when a file cannot be used. Large files are
-    processed by jobs.
+    processed by jobs. Of files that are only looked at it shows what is missing.
     """
-    tables = [file for file in files if is_own_layout(where(file.content), file.filename)]
-    whole = [file for file in files if file not in tables]
+    tables = [file for file in chosen.files if is_own_layout(where(file.content), file.filename)]
+    whole = [file for file in chosen.files if file not in tables]
+    looked = [looked_at(reception.storage, file) for file in whole] if chosen.is_only_looked_at else []
+    whole = [] if chosen.is_only_looked_at else whole
     long = [file for file in whole if is_long(reception.storage, file, in_force().later)]
     sessions = [file for file in whole if file not in long]
     jobs = [job_outcome(desk.take_in(reception, file, person)) for file in long]
@@ -224,7 +226,7 @@ def take_uploads(
     kept = reception.storage.files
     asked = [table_outcome(file, carried(kept, person.login, file, now)) for file in tables]
     with reception.storage.database.reading() as store:
-        outcomes = (*asked, *jobs, *outcomes_of(sessions, found, Diagnoses(store).summary))
+        outcomes = (*asked, *looked, *jobs, *outcomes_of(sessions, found, Diagnoses(store).summary))
         names = type_names(store)
     page = upload_page(outcomes, settings, names)
     return render(request, "upload.html", page, 422 if page.refused else 200)

@@ -43,8 +43,6 @@ GET /stands
 GET /stands/{{name:path}}
 GET /models/{{id}}
 GET /plan
-GET /ready
-GET /missing
 GET /jobs
 GET /jobs/{{id}}
 GET /jobs/{{id}}/outcome
@@ -142,8 +140,6 @@ GET {API}/uploads
 GET {API}/uploads/{{id}}
 POST {API}/plan/missing
 POST {API}/plan/ready
-POST /ready
-POST /missing
 PUT {SESSION}/stage
 GET {SESSION}/certificate
 GET {API}/certificates

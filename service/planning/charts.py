@@ -1,4 +1,4 @@
-"""Expected uncertainty over the plan, and the drift of the first minutes."""
+"""Expected uncertainty over the plan."""
 
 from functools import cache
 
@@ -7,11 +7,10 @@ import numpy as np
 from estimator.json_object import Json
 from estimator.message import say
 from estimator.planning import Plan, Sweep
-from estimator.readiness import Readiness
 from estimator.results import PARAMETERS
 from estimator.session import Array
 from service.kit.libraries import alt
-from service.kit.measures import MEASURES, THIN, Measure, deviation_measure, heading, number
+from service.kit.measures import MEASURES, Measure, heading
 from service.sessions.charts import DATA_FORM, ChartSet, Panel, hints, specification
 
 HEIGHT = 150
@@ -96,46 +95,3 @@ def _spec(across: str) -> Json:
         ],
         HEIGHT,
     )
-
-
-READINESS_HEIGHT = 140
-"""Pixels: six panels fit on a screen."""
-MINUTE = 60.0
-"""Seconds in a minute."""
-
-
-def readiness_charts(found: Readiness, kinds: dict[str, str]) -> ChartSet | None:
-    """One panel a sensor, all of one scale; None where nothing was recorded. ``kinds`` by sensor."""
-    if not len(found.time):
-        return None
-    allowed = {outlook.name: outlook.allowed for outlook in found.outlooks}
-    panels = tuple(_drift_panel(found, i, kinds[name], allowed.get(name)) for i, name in enumerate(found.names))
-    return ChartSet("readiness", "Change since the record began", _drift_spec(), panels)
-
-
-def _drift_panel(found: Readiness, column: int, kind: str, allowed: float | None) -> Panel:
-    change = found.change[:, column]
-    measure = deviation_measure(kind, "bias", float(np.max(np.abs([*change, allowed or 0.0]))))
-    minutes = found.time / MINUTE
-    points = [
-        {"x": float(f"{x:.5g}"), "y": float(f"{y * measure.factor:.4g}")} for x, y in zip(minutes, change, strict=True)
-    ]
-    limits = [] if allowed is None else [{"y": float(f"{side * allowed * measure.factor:.4g}")} for side in (-1, 1)]
-    low, high = (number(float(f"{edge * measure.factor:.2g}")) for edge in (change.min(), change.max()))
-    words = say("from {low} to {high}{thin_space}{label}", low=low, high=high, thin_space=THIN, label=measure.label)
-    return Panel(found.names[column], words, {DATA_FORM: points, "allowed": limits})
-
-
-@cache
-def _drift_spec() -> Json:
-    points, limits = (alt.NamedData(name=name) for name in (DATA_FORM, "allowed"))
-    x = alt.X("x:Q", title="minutes", axis=alt.Axis(tickCount=6), scale=alt.Scale(zero=False, nice=False))
-    y = alt.Y("y:Q", title=None, axis=alt.Axis(tickCount=5), scale=alt.Scale(zero=False))
-    shown = hints({"x:Q": "minutes", "y:Q": "change"})
-    line = alt.Chart(limits).mark_rule(color="var(--tolerance)", strokeDash=[5, 3]).encode(y=y)
-    dots = (
-        alt.Chart(points)
-        .mark_point(filled=True, opacity=1, size=14, color="var(--accent)")
-        .encode(x=x, y=y, tooltip=shown)
-    )
-    return specification([line, dots], READINESS_HEIGHT)

@@ -6,20 +6,22 @@ from functools import lru_cache
 import numpy as np
 from numpy.linalg import LinAlgError
 
-from estimator.errors import Problem, SessionError
+from estimator.errors import Problem, ScheduleError, SessionError
 from estimator.message import say
 from estimator.planning import Missing, Plan, missing
 from estimator.planning import plan as plan_session
-from estimator.readiness import Readiness, readiness
-from estimator.session import CalibrationSession
+from estimator.readiness import Readiness, ReadinessState, readiness
+from estimator.session import CALIBRATIONS, CalibrationSession
 from service.errors import NotFoundError, RefusedError
 from service.ingest import in_turn, read_first_rows, read_upload
 from service.kit.arriving_files import where
 from service.kit.measures import leading_kind
 from service.planning.pattern import completed, earlier, sensors_of, why_not
 from service.planning.question import PlanQuestion, ReadyQuestion
+from service.planning.words import missing_in_words, readiness_headline, reasons
 from service.sessions.records import PARAMETERS
 from service.sessions.sent import SentFile
+from service.sessions.words.conditions import Condition
 from service.storage import Storage
 from service.types.rules import DEFAULTS, tolerances_of
 from service.types.store import UnitTypes
@@ -68,14 +70,72 @@ def plannable_types(storage: Storage) -> tuple[str, ...]:
     return tuple(known.name for known in listed if not why_not(known))
 
 
+READY = Condition("pass", "Ready", "circle", "The measurement may begin.")
+COMPLETE = Condition("pass", "Complete", "circle", "No position is missing.")
+INCOMPLETE = Condition("conditional-pass", "Incomplete", "triangle-up", "Positions are missing.")
+WAIT = Condition("conditional-pass", "Not yet", "triangle-up", "Wait, or record for longer.")
+NOT_STILL = Condition("fail", "Not still", "square", "It moves or vibrates.")
+NOTHING = Condition("none", "No usable data", "stroke", "The record contains no information.")
+CONDITIONS = {
+    ReadinessState.READY: READY,
+    ReadinessState.NOT_STILL: NOT_STILL,
+    ReadinessState.NOT_WARM: WAIT,
+    ReadinessState.TOO_EARLY: WAIT,
+    ReadinessState.CANNOT_TELL: NOTHING,
+}
+
+
+@dataclass(frozen=True)
+class SoFar:
+    """A session that is being measured."""
+
+    condition: Condition
+    said: tuple[str, ...]
+    """The positions and parameters that are missing; of one position alone, whether the unit is warm and still."""
+
+
+def so_far(storage: Storage, session: CalibrationSession) -> SoFar | None:
+    """The session as far as it is measured; None of a programme without a calibration."""
+    if session.programme not in CALIBRATIONS:
+        return None
+    try:
+        found = missing(session)
+    except ScheduleError as fault:
+        answer = _answered(storage, session, ReadyQuestion.model_validate({}))
+        said = (readiness_headline(answer.found), *reasons(answer.found, answer.kind))
+        if session.sample_rate is None and is_of_one_position(session):
+            return SoFar(CONDITIONS[answer.found.state], said)
+        is_still = answer.found.state not in (ReadinessState.NOT_STILL, ReadinessState.CANNOT_TELL)
+        return SoFar(INCOMPLETE, (*(problem.message for problem in fault.problems), *(said if is_still else ())))
+    return SoFar(COMPLETE if found.is_complete else INCOMPLETE, missing_in_words(found))
+
+
+def is_of_one_position(session: CalibrationSession) -> bool:
+    """Whether all rows of a stand have one setting."""
+    settings = [labels for labels in (session.beta, session.flipped) if labels is not None]
+    return bool(settings) and all(len(np.unique(labels)) == 1 for labels in settings)
+
+
+def read_so_far(file: SentFile) -> CalibrationSession:
+    """The session in a file, however little of it is measured; RefusedError with every problem."""
+    content = where(file.content)
+    try:
+        with in_turn(content):
+            try:
+                return read_upload(content, file.filename, file.mapping)
+            except SessionError:
+                return read_first_rows(content, file.filename, file.mapping)
+    except SessionError as fault:
+        raise RefusedError(say("{filename} cannot be read so far.", filename=file.filename), fault.problems) from fault
+
+
 def missing_of(file: SentFile, positions: int | None, *, both_runs: bool) -> Missing:
     """The positions and uncertainties still to come; RefusedError with every problem where the file cannot be read so
     far.
     """
-    content = where(file.content)
+    session = read_so_far(file)
     try:
-        with in_turn(content):
-            return missing(read_upload(content, file.filename, file.mapping), positions, both_runs=both_runs)
+        return missing(session, positions, both_runs=both_runs)
     except SessionError as fault:
         raise RefusedError(say("{filename} cannot be read so far.", filename=file.filename), fault.problems) from fault
 

@@ -207,6 +207,7 @@ class PreviewSchema(BaseModel):
     sheets: list[str] = Field(description="Of a workbook.")
     columns: list[LayoutColumn] = Field(description="Of the file, in its order.")
     problems: list[Fault] = Field(description="What is missing or cannot be read yet; empty when it can be stored.")
+    so_far: list[str] = Field(description="What the session still lacks: positions, and parameters open until then.")
     first_rows: list[dict[str, float | str]] = Field(
         description="As they will be read, SI: angles in rad, sensors in m/s² or rad/s."
     )
@@ -244,6 +245,7 @@ def preview_layout(file: FileOf, storage: StorageOf, unit: Unit = "", unit_type:
             for column, kind in zip(look["columns"], kinds, strict=True)
         ],
         problems=faults(result.problems),
+        so_far=[] if result.so_far is None else list(result.so_far.said),
         first_rows=[] if session is None else first_rows(session),
         felt=None if session is None else felt_length(session),
     )

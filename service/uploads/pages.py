@@ -10,13 +10,17 @@ from service.errors import RefusedError
 from service.jobs.records import Job
 from service.jobs.words import ending_of, progress_of
 from service.kit.limits import in_force
+from service.planning.rules import SoFar, read_so_far, so_far
 from service.sessions.doubt import Reservations
 from service.sessions.records import DiagnosisSummary, Receipt, StoredSession
 from service.sessions.sent import SentFile
 from service.sessions.states import RecordState
 from service.sessions.words.conditions import QUESTIONED, Condition, condition_of
 from service.settings import Settings
+from service.storage import Storage
 from service.uploads.layout.form import Carried
+
+NO_PROGRAMME = "Its programme needs no positions: nothing can be said of it before it is stored."
 
 
 class Became(StrEnum):
@@ -47,17 +51,25 @@ class FileOutcome:
     """A table, for the page of its mapping."""
     job: Job | None = None
     progress: str = ""
+    so_far: SoFar | None = None
+    """Session under way, of which nothing was stored."""
 
     @property
     def became(self) -> Became:
         """Outcome of the file."""
         if self.receipt is not None:
             return Became.STORED if self.receipt.created else Became.BEFORE
-        return Became.OPEN if self.is_table or (self.job is not None and self.job.is_open) else Became.FAILED
+        return (
+            Became.OPEN
+            if self.is_table or self.so_far is not None or (self.job is not None and self.job.is_open)
+            else Became.FAILED
+        )
 
     @property
     def condition(self) -> Condition:
-        """Condition of the stored session; a refused file has none."""
+        """Condition of the stored session, or of one under way; a refused file has none."""
+        if self.so_far is not None:
+            return self.so_far.condition
         if self.receipt is None:
             return condition_of(None)
         if self.receipt.state is RecordState.QUESTIONED:
@@ -89,7 +101,7 @@ class UploadsPage:
     @property
     def refused(self) -> int:
         """Number of refused files."""
-        return sum(o.receipt is None and not o.is_table and o.job is None for o in self.outcomes)
+        return sum(o.receipt is None and not o.is_table and o.job is None and o.so_far is None for o in self.outcomes)
 
     @property
     def tally(self) -> dict[str, int]:
@@ -114,6 +126,15 @@ def table_outcome(file: SentFile, carried: Carried) -> FileOutcome:
 def job_outcome(job: Job) -> FileOutcome:
     """A large file in progress, or one without a result."""
     return FileOutcome(job.subject, job=job, progress=progress_of(job) or ending_of(job))
+
+
+def looked_at(storage: Storage, file: SentFile) -> FileOutcome:
+    """A session under way, with what it lacks."""
+    try:
+        session = read_so_far(file)
+    except RefusedError as fault:
+        return FileOutcome(file.filename, problems=fault.problems)
+    return FileOutcome(file.filename, so_far=so_far(storage, session) or SoFar(condition_of(None), (NO_PROGRAMME,)))
 
 
 def _outcome(

@@ -18,6 +18,7 @@ from service.ingest.layout.facts import Rows, completed, facts_seen, following_t
 from service.ingest.layout.mapping import FORMAT, PER_FILE_FIELDS, fingerprint, layout_of
 from service.ingest.layout.understand import SeenColumn, understood, with_kinds
 from service.planning.pattern import earlier
+from service.planning.rules import SoFar, so_far
 from service.storage import Storage
 from service.types.store import UnitTypes
 from service.units.store import Units
@@ -43,6 +44,8 @@ class Preview:
     session: CalibrationSession | None
     """Session as it would be stored; None while something is missing."""
     problems: tuple[Problem, ...]
+    so_far: SoFar | None
+    """Positions and parameters that are missing; None while it cannot be read so far."""
 
 
 def preview(
@@ -74,7 +77,9 @@ def preview(
     asked = questions(complete["session"], rows)
     answered = {problem.field for problem in asked} | set(following_the_rate(complete["session"], rows))
     problems = (*asked, *(problem for problem in problems if problem.field not in answered))
-    return Preview(complete, fingerprint(look), is_remembered, look, session, problems)
+    partly = session or _read(complete, content, filename, is_part=True)[0]
+    found = None if partly is None else so_far(storage, partly)
+    return Preview(complete, fingerprint(look), is_remembered, look, session, problems, found)
 
 
 def _seen(look: Mapping[str, Any]) -> list[SeenColumn]:

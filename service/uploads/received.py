@@ -294,12 +294,21 @@ MOST_FILES = 200
 """Most files in one form: some years of sessions of a unit; limits the number of parts that the parser holds."""
 
 
-async def _files(arriving: ArrivingOf) -> tuple[SentFile, ...]:
+@dataclass(frozen=True)
+class Chosen:
     """The chosen files."""
+
+    files: tuple[SentFile, ...]
+    is_only_looked_at: bool
+    """Whether nothing is to be stored."""
+
+
+async def _files(arriving: ArrivingOf) -> Chosen:
     form = await arriving.form(MOST_FILES)
     chosen = [file for file in form.getlist("files") if isinstance(file, LandedFile) and file.filename]
     marks = marks_said([word for word in MARKS if form.get(word)])
-    return tuple([SentFile(file.filename or "upload", await file.content(), **marks) for file in chosen])
+    files = [SentFile(file.filename or "upload", await file.content(), **marks) for file in chosen]
+    return Chosen(tuple(files), bool(form.get("look")))
 
 
-FormFiles = Annotated[tuple[SentFile, ...], Depends(_files)]
+ChosenOf = Annotated[Chosen, Depends(_files)]

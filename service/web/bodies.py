@@ -32,8 +32,6 @@ UPLOADS = frozenset(
         "/upload/layout",
         "/attachments",
         "/register/import",
-        "/ready",
-        "/missing",
     }
 )
 """Routes that receive files; they limit the size themselves."""

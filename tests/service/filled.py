@@ -21,15 +21,15 @@ def cells(content: bytes, name: str) -> list[list[Cell]]:
     ]
 
 
-def filled(template: bytes, asked: Mapping[str, Cell]) -> bytes:
-    """The two sheets of a session with every empty cell filled in, under the names that they have; what is asked and
-    has no row gets one."""
+def filled(template: bytes, asked: Mapping[str, Cell], count: int | None = None) -> bytes:
+    """The two sheets of a session with every empty cell of ``count`` rows (None: of all) filled in, under the names
+    that they have; what is asked and has no row gets one."""
     keys, table, shown = fastexcel.read_excel(template).sheet_names
     session = [[row[0], asked.get(str(row[0]), row[1])] for row in cells(template, keys)]
     session += [[key, value] for key, value in asked.items() if key not in {row[0] for row in session}]
     readings, example = cells(template, table), cells(template, shown)
     for k in range(len(readings[0])):
-        for row, like in zip(readings[1:], example[1:], strict=True):
+        for row, like in list(zip(readings[1:], example[1:], strict=True))[:count]:
             row[k] = like[k] if row[k] is None else row[k]
     buffer = BytesIO()
     with xlsxwriter.Workbook(buffer) as book:

@@ -13,6 +13,7 @@ from estimator.screening import JUDGED_BY_PARITY, Screening, declined_by
 from estimator.session import IN_SERVICE
 from service.ingest.layout.cutting import Cell
 from service.ingest.layout.grids import Grid, grid_of, is_nothing, number_of
+from service.ingest.layout.kinds import is_sensor
 from service.ingest.layout.mapping import ColumnMapping, Layout
 from service.ingest.layout.vocabulary import conversion, target_label
 
@@ -50,8 +51,11 @@ class Before:
         """Seconds of the days that have passed at midnights, and of the last time of day."""
 
 
-def document_of(content: bytes, filename: str, layout: Layout) -> tuple[dict[str, object], Where, Screening]:
-    """The session's document, a function from field and row to the cell in the file, and what a log's samples show."""
+def document_of(
+    content: bytes, filename: str, layout: Layout, *, part: bool = False
+) -> tuple[dict[str, object], Where, Screening]:
+    """The session's document, a function from field and row to the cell in the file, and what a log's samples show.
+    ``part``: rows that are yet to be measured are left out."""
     declined = declined_by(layout.session.get("screening")) or ()
     if layout.session.get("programme") == IN_SERVICE:
         declined = (*declined, *JUDGED_BY_PARITY, "no-data")
@@ -59,7 +63,9 @@ def document_of(content: bytes, filename: str, layout: Layout) -> tuple[dict[str
     require_own(grid, layout, filename)
     decimal = str(grid.taken.get("decimal", "."))
     mapped_columns = [(k, column) for k, column in enumerate(layout.columns) if column.meaning]
-    rows = [j for j in _kept_rows([grid.columns[k] for k, _ in mapped_columns]) if j not in grid.skipped]
+    is_partly = part and layout.session.get("sample_rate_hz") is None
+    filled = [k for k, column in mapped_columns if not is_partly or is_sensor(str(column.meaning))]
+    rows = [j for j in _kept_rows([grid.columns[k] for k in filled]) if j not in grid.skipped]
     before = Before()
     table = {
         str(c.meaning): read([grid.columns[k][j] for j in rows], c, layout, decimal, before) for k, c in mapped_columns

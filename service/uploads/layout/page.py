@@ -13,6 +13,7 @@ from estimator.session import ACCELEROMETER, GYROSCOPE, PROGRAMMES
 from service.ingest.layout.kinds import KINDS, is_sensor, kinds_of
 from service.ingest.layout.mapping import ENCODINGS
 from service.kit.measures import number
+from service.planning.rules import SoFar
 from service.uploads.layout.form import Carried, LayoutForm, half_angle_of, moment
 from service.uploads.layout.words import FACTS, KINDS_CALLED, LABELS, PLACES, RARE, said_on_page
 from service.uploads.preview import Preview, felt_length, first_rows
@@ -127,6 +128,9 @@ class LayoutPage:
     arrangement: str
     """Chosen before, where it could not be followed."""
     units: tuple[str, ...] = UNITS
+    so_far: SoFar | None = None
+    is_sampled: bool = False
+    """Whether only its first rows were read."""
     can_store: bool = False
     changed: bool = False
     """Whether it was confirmed, but differs from the shown page."""
@@ -171,6 +175,8 @@ def layout_page(carried: Carried, preview: Preview, form: LayoutForm, types: Seq
         problems=problems,
         arrangement=form.fields.get("arrangement", "") if half_angle_of(form.fields) is None else "",
         cone_angle=form.fields.get("cone_angle", ""),
+        so_far=preview.so_far,
+        is_sampled=preview.seen["sampled"],
         can_store=not problems,
         changed=form.fields.get("do") == "store" and not problems,
         **_first(preview),

@@ -80,7 +80,7 @@ function send(file, card) {
   return new Promise((done) => {
     const body = new FormData();
     body.append("files", file);
-    if (form.elements.check?.checked) body.append("check", "yes");
+    for (const name of ["check", "look"]) if (form.elements[name]?.checked) body.append(name, "yes");
     const request = new XMLHttpRequest();
     const bar = card.querySelector("progress");
     request.upload.onprogress = (event) => {

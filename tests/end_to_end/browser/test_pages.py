@@ -42,8 +42,6 @@ PATHS = (
     "/accounts",
     "/account",
     "/audit",
-    "/ready",
-    "/missing",
     "/jobs",
     "/units/nobody",
 )

@@ -38,29 +38,9 @@ def test_a_known_unit_is_judged_by_its_type_and_its_last_session_s_length(client
     assert found["duration_s"] == times[-1] - times[0]
 
 
-def test_the_page_says_it_in_one_sentence(client: httpx.Client) -> None:
-    sent = {"file": ("first.json", json.dumps(at_rest(drift=1e-5)))}
-    page = client.post("/ready", files=sent, data={"minutes": "96"})
+def test_the_upload_page_says_it_and_stores_nothing(client: httpx.Client) -> None:
+    sent = {"files": ("first.json", json.dumps(at_rest(drift=1e-5)))}
+    page = client.post("/upload", files=sent, data={"look": "yes"})
     assert page.status_code == 200
     assert "Not warm: waiting is not enough" in page.text
-
-
-def test_the_form_says_what_it_cannot_use(client: httpx.Client) -> None:
-    sent = {"file": ("first.json", json.dumps(at_rest(count=20)))}
-    assert client.post("/ready", files=sent, data={"minutes": "soon"}).status_code == 422
-    assert client.post("/ready", data={"minutes": "5"}).status_code == 422
-
-
-def test_what_is_missing_has_a_page(client: httpx.Client) -> None:
-    document = accelerometer_block(positions=12)
-    so_far = document | {"table": {name: column[:15] for name, column in document["table"].items()}}
-    page = client.post("/missing", files={"file": ("so-far.json", json.dumps(so_far))}, data={"runs": "both"})
-    assert "15 positions are done, 9 still to come." in page.text
-    assert "complete: ±" in page.text
-
-
-def test_both_pages_are_linked_from_the_upload_page(client: httpx.Client) -> None:
-    page = client.get("/upload").text
-    for address in ("/ready", "/missing"):
-        assert f'href="{address}"' in page
-        assert client.get(address).status_code == 200
+    assert client.get("/api/v1/sessions").json()["sessions"] == []
