@@ -85,10 +85,25 @@ def look_at(content: bytes | Path, filename: str, mapping: Mapping[str, Any] | N
     return preview
 
 
+def lines_of(content: bytes | Path, filename: str, mapping: Mapping[str, Any] | None = None) -> Json:
+    """What `look_at` gives, without columns, of a text that cannot be cut as it is understood; SessionError for any
+    other file."""
+    preview: Json = read_apart("lines", content, filename, mapping)
+    return preview
+
+
 def is_own_layout(content: bytes | Path, filename: str) -> bool:
-    """Whether a file is a table without a session's metadata; False for a file that cannot be read."""
+    """Whether a file is a table without a session's metadata, or a text that may be cut to one by hand."""
     try:
         return _claims_nothing(content) and not look_at(content, filename)["session"]
+    except SessionError:
+        return _may_be_cut(content, filename)
+
+
+def _may_be_cut(content: bytes | Path, filename: str) -> bool:
+    try:
+        require_table(content, filename)
+        return not lines_of(content, filename)["session"]
     except SessionError:
         return False
 

@@ -13,8 +13,9 @@ from estimator.screening import Screen
 from estimator.session import CalibrationSession
 from service.ingest import hdf5, mat, parquet, xlsx
 from service.ingest.formats import HDF5, LOGS, MAT, PARQUET, XLSX, is_binary, start_of
+from service.ingest.layout.decoding import SAMPLE_BYTES
 from service.ingest.layout.envelope import StoredTable, is_wrapped, unwrapped
-from service.ingest.layout.look import look
+from service.ingest.layout.look import lines, look
 from service.ingest.layout.mapping import layout_of
 from service.ingest.layout.reading import document_of
 from service.ingest.layout.sampling import Sample, sample_of
@@ -159,10 +160,16 @@ def look_at(content: Content, filename: str, mapping: Json | None = None) -> obj
     return look(_sample(content) or _whole(content, filename), filename, mapping)
 
 
+def lines_of(content: Content, filename: str, mapping: Json | None = None) -> object:
+    """Beginning of a text that cannot be cut as it is understood."""
+    return lines(start_of(content, SAMPLE_BYTES), filename, mapping)
+
+
 JOBS: dict[str, Callable[[Content, str, Json | None], object]] = {
     "session": session,
     "first-rows": first_rows,
     "look": look_at,
+    "lines": lines_of,
     "mat-matrices": mat_matrices,
 }
 """Name → function."""

@@ -206,6 +206,7 @@ class PreviewSchema(BaseModel):
     rows: int = Field(description="Of the file.")
     sheets: list[str] = Field(description="Of a workbook.")
     columns: list[LayoutColumn] = Field(description="Of the file, in its order.")
+    lines: list[str] = Field(description="First lines of a text that cannot be cut by `mapping.table` yet.")
     problems: list[Fault] = Field(description="What is missing or cannot be read yet; empty when it can be stored.")
     so_far: list[str] = Field(description="What the session still lacks: positions, and parameters open until then.")
     first_rows: list[dict[str, float | str]] = Field(
@@ -244,6 +245,7 @@ def preview_layout(file: FileOf, storage: StorageOf, unit: Unit = "", unit_type:
             LayoutColumn.model_validate({**column, "kind": kind})
             for column, kind in zip(look["columns"], kinds, strict=True)
         ],
+        lines=look["lines"],
         problems=faults(result.problems),
         so_far=[] if result.so_far is None else list(result.so_far.said),
         first_rows=[] if session is None else first_rows(session),

@@ -13,7 +13,7 @@ from estimator.message import say
 from estimator.session import CalibrationSession
 from estimator.writing import session_document
 from service.errors import NotFoundError, RefusedError
-from service.ingest import look_at, read_first_rows, read_upload
+from service.ingest import lines_of, look_at, read_first_rows, read_upload
 from service.ingest.layout.facts import Rows, completed, facts_seen, following_the_rate, questions, with_unit_of_time
 from service.ingest.layout.mapping import FORMAT, PER_FILE_FIELDS, fingerprint, layout_of
 from service.ingest.layout.understand import SeenColumn, understood, with_kinds
@@ -59,12 +59,14 @@ def preview(
 ) -> Preview:
     """Preview of a table; RefusedError for another file or an invalid mapping."""
     try:
-        look = look_at(content, filename, mapping)
+        look, faults = _looked(content, filename, mapping)
         if look["session"]:
             raise RefusedError(KNOWN, (Problem("file", KNOWN),))
         is_remembered = False
-        if mapping is None:
+        if mapping is None or _is_cut_anew(look, mapping):
+            known = {} if mapping is None else mapping.get("session", {})
             mapping, is_remembered = _proposed(storage, look, unit, unit_type, filename)
+            mapping = {**mapping, "session": {**mapping["session"], **known}}
         complete = {**mapping, "format": FORMAT, "table": dict(look["taken"]), "columns": _columns_for(look, mapping)}
         layout_of(complete, filename)
         rows = Rows(complete["columns"], _seen(look), look["rows"])
@@ -73,6 +75,8 @@ def preview(
         raise RefusedError(
             say("{filename} cannot be read as a table. Nothing was stored.", filename=filename), fault.problems
         ) from fault
+    if faults:
+        return Preview(complete, fingerprint(look), False, look, None, faults, None)
     session, problems = _read(complete, content, filename, is_part=look["sampled"])
     asked = questions(complete["session"], rows)
     answered = {problem.field for problem in asked} | set(following_the_rate(complete["session"], rows))
@@ -80,6 +84,24 @@ def preview(
     partly = session or _read(complete, content, filename, is_part=True)[0]
     found = None if partly is None else so_far(storage, partly)
     return Preview(complete, fingerprint(look), is_remembered, look, session, problems, found)
+
+
+def _looked(
+    content: bytes | Path, filename: str, mapping: Mapping[str, Any] | None
+) -> tuple[Json, tuple[Problem, ...]]:
+    """What is seen of the table; of a text that cannot be cut its first lines, and why it cannot."""
+    try:
+        return look_at(content, filename, mapping), ()
+    except SessionError as fault:
+        try:
+            return lines_of(content, filename, mapping), fault.problems
+        except SessionError:
+            raise fault from None
+
+
+def _is_cut_anew(look: Mapping[str, Any], mapping: Mapping[str, Any]) -> bool:
+    """Whether the mapping is one of settings alone, without any column or sensor yet."""
+    return not mapping.get("columns") and not mapping.get("session", {}).get("sensors") and bool(look["columns"])
 
 
 def _seen(look: Mapping[str, Any]) -> list[SeenColumn]:

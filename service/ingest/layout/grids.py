@@ -131,8 +131,10 @@ def _text(content: bytes, filename: str, stated: Mapping[str, Any], later: bytes
     taken = {"encoding": encoding, "separator": separator}
     record = str(stated["record"]) if "record" in stated else record_of(rows)
     below = cut(later.decode(encoding, "replace").replace("\r", ""), separator, filename)
+    if record or "record" in stated:
+        taken["record"] = record
     if record:
-        rows, below, taken = of_record(rows, record), readings_of(below, record), {**taken, "record": record}
+        rows, below = of_record(rows, record), readings_of(below, record)
     following, rows = len(rows), [*rows, *below]
     check_table(filename, len(rows), max(map(len, rows), default=0))
     grid = _headed("text", rows, taken, stated, filename)
@@ -142,7 +144,7 @@ def _text(content: bytes, filename: str, stated: Mapping[str, Any], later: bytes
 def _sampled(sample: Sample, filename: str, stated: Mapping[str, Any]) -> Grid:
     grid = _text(sample.head, filename, stated, sample.later)
     seen = sample.head.count(b"\n") + sample.later.count(b"\n")
-    share = grid.rows / (seen - int(grid.taken["first_row"]) + 1) if "record" in grid.taken else 1.0
+    share = grid.rows / (seen - int(grid.taken["first_row"]) + 1) if grid.taken.get("record") else 1.0
     return replace(grid, unseen=round(share * (sample.lines - seen)))
 
 

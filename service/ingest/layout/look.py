@@ -8,8 +8,9 @@ import numpy as np
 from estimator.json_object import Json
 from estimator.message import say
 from service.ingest import hdf5, mat, parquet
-from service.ingest.formats import HDF5, LOGS, MAT, PARQUET, XLSX
-from service.ingest.layout.cutting import Cell
+from service.ingest.formats import HDF5, LOGS, MAT, PARQUET, XLSX, is_binary
+from service.ingest.layout.cutting import Cell, separator_of
+from service.ingest.layout.decoding import NO_TEXT, encoding_of
 from service.ingest.layout.envelope import is_wrapped
 from service.ingest.layout.grids import Grid, grid_of, is_nothing, number_of
 from service.ingest.layout.mapping import layout_of
@@ -30,6 +31,12 @@ MOST_VALUES = 20_000
 """First values of a column that are looked at for its meaning: some minutes of a log."""
 MOST_CELLS = 400_000
 """Values that are looked at, of all columns together."""
+LINES = 12
+"""First lines that are shown of a text that cannot be cut."""
+FEWEST_ROWS = 2
+"""Lines with a number; text with fewer is no table."""
+START = 32
+"""Bytes from which a binary format is recognised."""
 MOSTLY = 0.5
 """Share of numbers from which a column counts as numeric."""
 
@@ -73,6 +80,31 @@ def look(content: bytes | Sample, filename: str, mapping: Json | None = None) ->
         "columns": [_column(heading, cells, grid) for heading, cells in zip(grid.headings, grid.columns, strict=True)],
         "facts": dict(grid.facts),
         "titles": dict(grid.titles),
+        "lines": [],
+    }
+
+
+def lines(content: bytes, filename: str, mapping: Json | None = None) -> object:
+    """Beginning of a text that cannot be cut as it is understood, with the settings to be corrected."""
+    stated = {} if mapping is None else layout_of(mapping, filename).table
+    if is_binary(content[:START]) or is_session(content, filename):
+        raise refusal(filename, NO_TEXT)
+    encoding = str(stated.get("encoding") or encoding_of(content))
+    text = content.decode(encoding, "replace").lstrip("\ufeff")
+    if sum(any(sign.isdecimal() for sign in line) for line in text.splitlines()) < FEWEST_ROWS:
+        raise refusal(filename, NO_TEXT)
+    settings = {"encoding": encoding, "separator": separator_of(text), "decimal": ".", "header_row": 0, "first_row": 1}
+    return {
+        "session": False,
+        "kind": "text",
+        "taken": settings | dict(stated),
+        "sheets": [],
+        "rows": 0,
+        "sampled": False,
+        "columns": [],
+        "facts": {},
+        "titles": {},
+        "lines": [_shown(line) for line in text.splitlines()[:LINES]],
     }
 
 

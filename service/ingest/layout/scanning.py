@@ -70,7 +70,7 @@ class TextRows:
 
     @property
     def _first(self) -> int:
-        return 0 if "record" in self.grid.taken else int(self.grid.taken["first_row"]) - 1
+        return 0 if self.grid.taken.get("record") else int(self.grid.taken["first_row"]) - 1
 
     def where(self, field: str, row: int | None) -> str:
         """Column and line of a cell of the stretches that were read last."""
@@ -107,7 +107,7 @@ class TextRows:
     def _plain(self, text: str, before: Before) -> tuple[pl.DataFrame, NDArray[np.int64]] | None:
         """Rows of numbers, and of labels, that need no care; None of others, with nothing read."""
         separator = str(self.grid.taken["separator"])
-        if "record" in self.grid.taken or any(column.fill_down for _, column in self.mapped):
+        if self.grid.taken.get("record") or any(column.fill_down for _, column in self.mapped):
             return None
         if separator == BLANK:
             text = "\n".join([" ".join(line.split()) for line in text.split("\n")])
@@ -157,7 +157,7 @@ class TextRows:
         taken = self.grid.taken
         rows = cut(text, str(taken["separator"]), self.filename)
         lines = list(range(len(rows)))
-        if "record" in taken:
+        if taken.get("record"):
             lines = [j for j in lines if readings_of(rows[j : j + 1], str(taken["record"]))]
             rows = readings_of(rows, str(taken["record"]))
         width = len(self.grid.headings)

@@ -37,7 +37,7 @@ MOST_FIELDS = 5000
 INFLATION = 1.4
 """Growth of bytes encoded as text: 4/3, and the form around them."""
 CHOSEN = ("sheet", "encoding", "separator", "record", "decimal", "header_row", "first_row")
-"""Settings of the parser that can be chosen."""
+"""Settings of the parser that can be chosen; what follows one that was changed is understood anew."""
 TEXTS = ("unit", "unit_type", "operator", "notes", "programme", "block", "stand.id")
 NUMBERS = (
     "stand.alpha_deg", "stand.chi_deg", "site.latitude_deg", "site.gravity_m_s2", "time_since_power_on_s",
@@ -163,13 +163,14 @@ def corrected(form: LayoutForm) -> Json | None:
     if form.mapping is None:
         return None
     fields, before = form.fields, form.mapping
-    table = dict(before.get("table", {})) | _chosen(fields)
+    table = dict(before.get("table", {})) | _chosen(fields, before.get("table", {}))
     is_same = all(table.get(key) == value for key, value in before.get("table", {}).items())
     columns = [_column(fields, k, column) for k, column in enumerate(before["columns"])] if is_same else []
     kinds = _kinds(fields, before, columns)
     if not is_same:
-        changed = {key for key in CHOSEN if table.get(key) != before.get("table", {}).get(key)}
-        table = {key: table[key] for key in changed}
+        changed = [key for key in CHOSEN if table.get(key) != before.get("table", {}).get(key)]
+        kept = (*CHOSEN[: CHOSEN.index(changed[0])], *changed)
+        table = {key: table[key] for key in kept if key in table}
     return {
         **before,
         "table": table,
@@ -196,11 +197,13 @@ def _kinds(fields: Mapping[str, str], before: Mapping[str, Any], columns: list[J
     return {column["as"]: kind for column, kind in zip(columns, kinds, strict=True) if is_sensor(column["as"] or "")}
 
 
-def _chosen(fields: Mapping[str, str]) -> Json:
+def _chosen(fields: Mapping[str, str], before: Mapping[str, Any]) -> Json:
+    """Settings of the parser; an empty kind of record stands for rows of all kinds."""
     settings: Json = {}
+    fields = {**fields, "table.separator": fields.get("table.sign") or fields.get("table.separator", "")}
     for key in CHOSEN:
         text = fields.get(f"table.{key}", "")
-        if text:
+        if text or (key == "record" and before.get(key) and f"table.{key}" in fields):
             settings[key] = int(text) if text.isdecimal() and key.endswith("_row") else text
     return settings
 

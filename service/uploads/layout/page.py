@@ -128,6 +128,8 @@ class LayoutPage:
     arrangement: str
     """Chosen before, where it could not be followed."""
     units: tuple[str, ...] = UNITS
+    lines: tuple[str, ...] = ()
+    """First lines of a text that cannot be cut yet."""
     so_far: SoFar | None = None
     is_sampled: bool = False
     """Whether only its first rows were read."""
@@ -156,7 +158,8 @@ def layout_page(carried: Carried, preview: Preview, form: LayoutForm, types: Seq
         more=tuple(column for column in filled_columns if column not in shown),
         left_out=sum(column.empty for column in columns),
         taken=tuple(_taken(preview)),
-        numbers=tuple(_row_fields(mapping["table"])),
+        numbers=tuple(_row_fields(mapping["table"], preview.seen["kind"])),
+        lines=tuple(preview.seen["lines"]),
         unit=str(session.get("unit") or ""),
         unit_type=str(session.get("unit_type") or ""),
         like=like,
@@ -248,9 +251,10 @@ def _taken(preview: Preview) -> Iterator[tuple[str, str, tuple[Choice, ...]]]:
         yield "decimal", "Decimal sign", tuple(Choice(k, v, k == table["decimal"]) for k, v in DECIMALS.items())
 
 
-def _row_fields(table: Mapping[str, Any]) -> Iterator[FactField]:
-    if "record" in table:
-        yield FactField("record", "Rows that begin with", str(table["record"]), "text")
+def _row_fields(table: Mapping[str, Any], kind: str) -> Iterator[FactField]:
+    if kind == "text":
+        yield FactField("sign", "or by this sign", "", "text")
+        yield FactField("record", "Only rows that begin with", str(table.get("record", "")), "text")
     for key, label in (("header_row", "Headings in row"), ("first_row", "Readings from row")):
         if key in table and "header_row" in table:
             yield FactField(key, label, str(table[key]), "numeric")

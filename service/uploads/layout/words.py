@@ -41,7 +41,7 @@ LABEL_OF = {key: label for key, label, _ in (*PLACES, *RARE)} | {
     "operator": "Operator", "notes": "Notes", "block": "Kind of sensors", "programme": "Programme",
     "stand": "Stand: name or number", "sensors": "Sensors", "table": "Table", "columns": "Columns", "file": "File",
     "table.sheet": "Sheet", "table.encoding": "Encoding", "table.separator": "Columns parted by",
-    "table.record": "Rows that begin with",
+    "table.record": "Only rows that begin with",
     "table.decimal": "Decimal sign", "table.header_row": "Headings in row", "table.first_row": "Readings from row",
 }  # fmt: skip
 """Names of the fields of a session and of its table's settings."""

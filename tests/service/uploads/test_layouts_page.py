@@ -262,3 +262,26 @@ def test_the_oldest_give_way(storage: Storage, monkeypatch: pytest.MonkeyPatch) 
     assert kept([("a", b"%d" % k) for k in range(MOST + 1)]) == [False] + [True] * MOST
     monkeypatch.setattr("service.storage.aside.MOST_BYTES", 1000)
     assert kept([(who, who.encode() * 900) for who in "bcd"]) == [False, True, True]
+
+
+def test_a_text_that_cannot_be_cut_is_cut_by_hand(client: httpx.Client) -> None:
+    own = ("Protocol 7~of the stand\n" + "".join(f"{k}~{k % 5}.5~{-k % 7}.25\n" for k in range(1, 30))).encode()
+    card = client.post("/upload", files={"files": ("odd.txt", own)})
+    assert card.status_code == 200
+    page = sent(client, {name: shown(card.text)[name] for name in ("filename", "content")}).text
+    assert "Protocol 7~of the stand" in page
+    assert faults(page)["Table"].startswith("has no row of numbers")
+    cut = shown(sent(client, shown(page), **{"table.sign": "~", "do": "look"}).text)
+    assert [name for name in cut if name.startswith("as.")] == ["as.0", "as.1", "as.2"]
+    assert (cut["table.separator"], cut["table.first_row"]) == ("~", "2")
+    again = shown(sent(client, cut, **{"table.first_row": "4", "do": "look"}).text)
+    assert (again["table.separator"], again["table.first_row"]) == ("~", "4")
+
+
+def test_a_record_that_is_none_is_cleared(client: httpx.Client) -> None:
+    rows = [f"{'AB'[k % 2]},{k}" + f",{k % 7}.5" * (2 + k % 2) for k in range(40)]
+    fields = shown(first_page(client, "\n".join(rows).encode()))
+    assert fields["table.record"] in ("A", "B")
+    cleared = shown(sent(client, fields, **{"table.record": "", "do": "look"}).text)
+    assert (cleared["table.record"], len([name for name in cleared if name.startswith("as.")])) == ("", 5)
+    assert shown(sent(client, cleared, do="look").text)["table.record"] == ""
