@@ -15,7 +15,7 @@ from estimator.reading import read_session
 from estimator.reading.source import LARGEST_FILE
 from estimator.session import CalibrationSession
 from service.ingest.foreign import require_table
-from service.ingest.formats import BINARY, LOGS, is_binary, start_of
+from service.ingest.formats import BINARY, JSON, LOGS, is_binary, start_of
 from service.kit.lock_order import outside_writing
 
 if TYPE_CHECKING:
@@ -128,7 +128,8 @@ def said_as_table(content: bytes | Path, filename: str, problems: tuple[Problem,
 
 def _claims_nothing(content: bytes | Path) -> bool:
     """Whether a file neither is empty nor begins as a session file in JSON or CSV does."""
-    return start_of(content, 1024).lstrip(b"\xef\xbb\xbf \t\r\n#")[:1] not in (b"{", b"[", b"")
+    start = start_of(content, 1024).lstrip(b"\xef\xbb\xbf \t\r\n#")
+    return bool(start) and JSON.match(start) is None
 
 
 def read_file(path: Path, *, part: bool = False) -> CalibrationSession:

@@ -1,5 +1,6 @@
 """The binary formats by their first bytes. The content decides what a file is, never its name."""
 
+import re
 from pathlib import Path
 
 PARQUET = b"PAR1"
@@ -40,8 +41,10 @@ def may_be_log(start: bytes) -> bool:
     return start.startswith(PARQUET) or start.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"#")
 
 
+JSON = re.compile(rb"[\xef\xbb\xbf \t\r\n]*(?:\{|\[\s*[\[{\"\d\]-])")
+"""Beginning of a text in JSON."""
+
+
 def may_be_long(start: bytes) -> bool:
     """Whether the first bytes are those of a format that can be read in parts: Parquet, or rows of text."""
-    return start.startswith(PARQUET) or not (
-        is_binary(start) or start.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] in (b"", b"{", b"[")
-    )
+    return start.startswith(PARQUET) or not (is_binary(start) or JSON.match(start) or not start.strip())

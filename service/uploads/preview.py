@@ -14,7 +14,15 @@ from estimator.session import CalibrationSession
 from estimator.writing import session_document
 from service.errors import NotFoundError, RefusedError
 from service.ingest import lines_of, look_at, read_first_rows, read_upload
-from service.ingest.layout.facts import Rows, completed, facts_seen, following_the_rate, questions, with_unit_of_time
+from service.ingest.layout.facts import (
+    Rows,
+    completed,
+    facts_seen,
+    following_the_rate,
+    questions,
+    started_at,
+    with_unit_of_time,
+)
 from service.ingest.layout.mapping import FORMAT, PER_FILE_FIELDS, fingerprint, layout_of
 from service.ingest.layout.understand import SeenColumn, understood, with_kinds
 from service.planning.pattern import earlier
@@ -120,9 +128,11 @@ def _proposed(storage: Storage, look: Mapping[str, Any], unit: str, unit_type: s
     facts = facts_of(storage, unit, unit_type)
     seen = _seen(look)
     guesses = with_kinds(seen, facts.get("sensors", ()), filename.rpartition(".")[0])
-    columns = with_unit_of_time([guess.column for guess in guesses], seen, look["rows"])
+    rate = look["titles"].get("sample_rate_hz")
+    columns = with_unit_of_time([guess.column for guess in guesses], seen, look["rows"], rate)
     guesses = [replace(guess, column=column) for guess, column in zip(guesses, columns, strict=True)]
     found = {**facts, **look["facts"]} or facts_seen(guesses, seen, look["rows"])
+    found = {**started_at(columns, seen), **found}
     return {"columns": columns, "session": _with_unit(_titled(found, look), unit)}, False
 
 

@@ -2,6 +2,7 @@
 of each sensor."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from datetime import UTC, datetime
 from typing import Any, TypeVar
 
 import numpy as np
@@ -12,8 +13,10 @@ from estimator.message import say
 from estimator.screening.clock import MOST_POSITIONS, SAMPLES
 from estimator.session import ACCELEROMETER, GYROSCOPE
 from service.ingest.layout.evidence import (
+    EPOCH,
     GRAVITIES,
     RATE_UNITS,
+    TIME_UNITS,
     Array,
     TurnFactors,
     clock_unit,
@@ -23,6 +26,7 @@ from service.ingest.layout.evidence import (
     turns_of,
 )
 from service.ingest.layout.kinds import is_sensor
+from service.ingest.layout.reading import moment_of
 from service.ingest.layout.triads import AXES, values_of
 from service.ingest.layout.understand import SeenColumn, Understood
 from service.ingest.layout.vocabulary import LETTERS, conversion, plain_label, unit_of
@@ -32,6 +36,8 @@ LABELLED = ("run", "beta_deg", "turn_angle_deg", "position")
 SI = {ACCELEROMETER: "m/s²", GYROSCOPE: "rad/s"}
 QUANTITY = {ACCELEROMETER: "acceleration", GYROSCOPE: "rate"}
 COUNT = "count"
+SAME_RATE = 0.02
+"""Largest relative difference between the rate of a clock and the one that the file states."""
 DIGITS = 4
 """Significant digits of a nominal scale factor that is estimated: the calibration finds the others."""
 ORIENTATIONS, STAND = "arbitrary-orientations", "two-axis-stand"
@@ -114,10 +120,19 @@ def facts_seen(guesses: Sequence[Understood], seen: Sequence[SeenColumn], rows: 
     return facts if rate is None else {**facts, "sample_rate_hz": rate}
 
 
-def with_unit_of_time(columns: Sequence[Json], seen: Sequence[SeenColumn], rows: int) -> list[Json]:
-    """The columns with the likely unit of times without one, where the turns that gyros read confirm it."""
+def with_unit_of_time(
+    columns: Sequence[Json], seen: Sequence[SeenColumn], rows: int, rate: object = None
+) -> list[Json]:
+    """The columns with the likely unit of times without one, where the turns that gyros read confirm it; with the
+    ``rate`` that the file states, Hz, the unit that gives it, or else without these times."""
     table = Rows(columns, seen, rows)
-    if not table.asks_unit_of_time() or not (unit := table.likely_unit_of_time()):
+    if isinstance(rate, float) and table.asks_unit_of_time():
+        units = (u for u in TIME_UNITS if abs((table.rate(u) or 0.0) - rate) <= SAME_RATE * rate)
+        unit = next(units, "")
+        known: Json = {"unit": unit} if unit else {"as": None}
+        return [{**column, **known} if column["as"] == "time_s" else column for column in columns]
+    unit = table.likely_unit_of_time() if table.asks_unit_of_time() else ""
+    if not unit:
         return list(columns)
     names = {
         letter: [{"name": name} for name in table.columns if name[0] == letter and is_sensor(name)] for letter in "AG"
@@ -129,6 +144,21 @@ def with_unit_of_time(columns: Sequence[Json], seen: Sequence[SeenColumn], rows:
     if not found or (stated and plain_label(stated) not in (found, COUNT)):
         return list(columns)
     return [{**column, "unit": unit} if column["as"] == "time_s" else column for column in columns]
+
+
+def started_at(columns: Sequence[Json], seen: Sequence[SeenColumn]) -> Json:
+    """The start of a session by the first of its times, where these are dates or count from 1970."""
+    for column, one in zip(columns, seen, strict=True):
+        if column.get("as") != "time_s" or not one.cells:
+            continue
+        if not one.numeric:
+            moment = moment_of(one.cells[0].strip())
+            return {} if moment is None else {"started_at": moment.isoformat() + ("Z" if moment.tzinfo is None else "")}
+        times, over, _ = conversion(str(column.get("unit") or "s"), "s") or (1.0, 1.0, 0.0)
+        seconds = 0.0 if one.values is None else float(one.values[0]) * times / over
+        if EPOCH[0] <= seconds < EPOCH[1]:
+            return {"started_at": datetime.fromtimestamp(round(seconds), UTC).isoformat().replace("+00:00", "Z")}
+    return {}
 
 
 Entry = TypeVar("Entry", bound=Mapping[str, Any])

@@ -8,7 +8,7 @@ import numpy as np
 from estimator.json_object import Json
 from estimator.message import say
 from service.ingest import hdf5, mat, parquet
-from service.ingest.formats import HDF5, LOGS, MAT, PARQUET, XLSX, is_binary
+from service.ingest.formats import HDF5, JSON, LOGS, MAT, PARQUET, XLSX, is_binary
 from service.ingest.layout.cutting import Cell, separator_of
 from service.ingest.layout.decoding import NO_TEXT, encoding_of
 from service.ingest.layout.envelope import is_wrapped
@@ -57,7 +57,7 @@ def is_session(content: bytes, filename: str) -> bool:
     if content.startswith(MAT):
         return mat.has_metadata(content, filename)
     head = content[:4096].lstrip(b"\xef\xbb\xbf \t\r\n")
-    return not head or head[:1] in b"{[" or (head[:1] == b"#" and head.lstrip(b"# \t")[:1] == b"{")
+    return not head or JSON.match(head) is not None or (head[:1] == b"#" and head.lstrip(b"# \t")[:1] == b"{")
 
 
 def look(content: bytes | Sample, filename: str, mapping: Json | None = None) -> object:

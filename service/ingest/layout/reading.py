@@ -24,11 +24,12 @@ CLOCK = re.compile(
     r"(?: ?(?P<half>[AaPp])\.?[Mm]\.?)?$"
 )
 """A time of day, or minutes and seconds; a date with strokes may be before it, in any order."""
+BEFORE_ZONE = re.compile(r" (?=[+\-]\d\d:?\d\d$)")
 READERS_OF_TIMES: tuple[Callable[[str], datetime], ...] = (
-    datetime.fromisoformat,
+    lambda text: datetime.fromisoformat(BEFORE_ZONE.sub("", text)),
     *(
         lambda text, form=form: datetime.strptime(text, form)
-        for form in ("%d.%m.%Y %H:%M:%S.%f", "%d.%m.%Y %H:%M:%S", "%d.%m.%Y %H:%M")
+        for form in ("%d.%m.%Y %H:%M:%S.%f", "%d.%m.%Y %H:%M:%S", "%d.%m.%Y %H:%M", "%d-%b-%Y %H:%M:%S.%f")
     ),
 )
 """Readers of dates with times, the quickest first."""
@@ -209,9 +210,15 @@ def _seconds(cell: Cell) -> float | None:
     if match := CLOCK.match(text):
         hours = int(match["h"] or 0) % (NOON if match["half"] else 24) + NOON * ((match["half"] or "").lower() == "p")
         return 3600 * hours + 60 * int(match["m"]) + float(match["s"].replace(",", "."))
-    for moment_of in READERS_OF_TIMES:
+    moment = moment_of(text)
+    return None if moment is None else (moment.replace(tzinfo=None) - datetime(1970, 1, 1)).total_seconds()
+
+
+def moment_of(text: str) -> datetime | None:
+    """The date and time in a text; None where there is no date."""
+    for read_moment in READERS_OF_TIMES:
         try:
-            return (moment_of(text).replace(tzinfo=None) - datetime(1970, 1, 1)).total_seconds()
+            return read_moment(text)
         except ValueError:
             continue
     return None

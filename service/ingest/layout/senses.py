@@ -15,6 +15,8 @@ FUSED = {
     for kind, words in SHORT.items()
 }
 """``ax``, ``wz``, ``gfx``: kind and axis in one word."""
+TURNED = re.compile(r"[rRРр]_?(?P<axis>[xyzXYZху])")
+"""``RX``: an angle, or a rate where the values say so."""
 NAMED_AXES = {"roll": "x", "pitch": "y", "yaw": "z", "longitudinal": "x", "lateral": "y", "vertical": "z"}
 """Names of axes of a quantity with a unit of acceleration or rate; of another one they are angles and places."""
 QUANTITIES = {"acceleration": "accelerometer", "rate": "gyroscope"}
@@ -67,6 +69,8 @@ def sense_of(name: str, unit: str) -> Sense | None:
     fused = _fused(name)
     place, group = (fused[1], fused[2]) if fused else _place(words)
     kind = QUANTITIES.get(quantity or "") or (fused[0] if fused else _kind(words, group if place else ()))
+    if kind is None and (match := TURNED.fullmatch(name.strip())):
+        return Sense(None, AXES[match["axis"].lower()], ("r",), unit)
     if kind is None and (not place or group):
         return None
     return Sense(kind, place, group, unit)

@@ -73,6 +73,10 @@ def found_in(
     for k, sense in senses.items():
         groups.setdefault((sense.kind, sense.group if sense.place else (), sense.unit), {})[k] = sense
     triads = [_with_facts(SensorTriad(kind, group, unit), values, table) for (kind, _, unit), group in groups.items()]
+    felt = next(
+        (values_of(values, t.places) for t in triads if t.kind == ACCELEROMETER and len(t.senses) == AXES), None
+    )
+    triads = [SensorTriad(GYROSCOPE, t.senses, t.unit) if _reads_turns(t, felt, values) else t for t in triads]
     found: dict[int, FoundSensor | None] = dict.fromkeys(senses)
     for kind in LETTERS:
         for number, triad in enumerate(_apart([t for t in triads if t.kind == kind], values), start=1):
@@ -131,6 +135,13 @@ def _with_facts(triad: SensorTriad, values: Mapping[int, Array | None], table: s
         return SensorTriad(None, triad.senses, triad.unit)
     is_right = length is None or is_like_gravity(length * times / over, GRAVITIES["g"])
     return triad if is_right else SensorTriad(triad.kind, triad.senses)
+
+
+def _reads_turns(triad: SensorTriad, felt: Array | None, values: Mapping[int, Array | None]) -> bool:
+    """Whether a triad of no kind reads how gravity turns."""
+    turned = values_of(values, triad.places)
+    is_open = triad.kind is None and len(triad.senses) == AXES
+    return is_open and felt is not None and turned is not None and turns_of(felt, turned) is not None
 
 
 def _apart(triads: Sequence[SensorTriad], values: Mapping[int, Array | None]) -> list[SensorTriad]:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from estimator.json_object import Json
+from estimator.reading.bounds import WITHIN
 from service.ingest.layout.evidence import Array, clock_unit
 from service.ingest.layout.senses import Sense, is_of_another_thing, sense_of, words_of
 from service.ingest.layout.triads import FoundSensor, found_in, without_headings
@@ -100,8 +101,9 @@ def with_kinds(
             guess = Understood({"heading": column.heading, "as": sensor.name, **unit}, sensor.kind)
         else:
             guess = Understood(_guess(column, names, senses.get(k), is_none=k in found))
-        if bare and "time_s" not in used and not guess.column["as"] and (clock := _clock_without_heading(column)):
-            guess = Understood({"heading": column.heading, "as": "time_s", "unit": clock})
+        if bare and "time_s" not in used and not guess.column["as"] and _is_clock(column):
+            clock, is_certain = clock_unit(column.values) if column.values is not None else ("", False)
+            guess = Understood({"heading": column.heading, "as": "time_s"} | ({"unit": clock} if is_certain else {}))
         if guess.column["as"] in used:
             guess = Understood({"heading": column.heading, "as": None})
         used |= {guess.column["as"]} - {None}
@@ -144,7 +146,11 @@ def _guess(column: SeenColumn, names: Mapping[str, str], sense: Sense | None, *,
     if column.empty or is_none:
         return guess
     meaning = column.meaning or _meaning(name, unit, column, names, sense)
-    if meaning in LABELS and _moves(column):
+    if (meaning in LABELS and _moves(column)) or (
+        meaning == "time_s" and column.cells and not column.numeric and column.values is None
+    ):
+        return guess
+    if meaning == "temperature_c" and not unit and column.values is not None and not _is_of_a_room(column.values):
         return guess
     if meaning == "time_s":
         unit = unit or _unit_of_time(name, column)
@@ -156,12 +162,17 @@ def _guess(column: SeenColumn, names: Mapping[str, str], sense: Sense | None, *,
     return guess
 
 
-def _clock_without_heading(column: SeenColumn) -> str:
-    """The unit of a column that is surely a clock; empty of any other."""
-    if column.values is None or not column.numeric or not np.all(np.diff(column.values) >= 0):
-        return ""
-    unit, is_certain = clock_unit(column.values)
-    return unit if is_certain else ""
+def _is_clock(column: SeenColumn) -> bool:
+    """Whether a column without a heading advances as a clock does, and not as numbers of rows do."""
+    if column.values is None or not column.numeric or len(column.values) < MANY_ROWS:
+        return False
+    steps = np.diff(column.values)
+    return bool(np.all(steps >= 0) and np.median(steps) > 0 and not np.all(steps == 1))
+
+
+def _is_of_a_room(values: Array) -> bool:
+    """Whether temperatures without a unit may be in °C: counts of a thermometer are not."""
+    return bool(WITHIN["temperature_c"].held_by(values[np.isfinite(values)]).all())
 
 
 def _moves(column: SeenColumn) -> bool:

@@ -144,7 +144,7 @@ SENSOR_WORDS = {
 LETTERS = {ACCELEROMETER: "A", GYROSCOPE: "G"}
 """Letter that the names of new sensors begin with."""
 SHORT = {
-    ACCELEROMETER: "a acc acl accel xl gf f alpha ак акс aк",
+    ACCELEROMETER: "a acc acl accl accel xl gf f alpha ак акс aк",
     GYROSCOPE: "g w gyr gyro omega ω rot rate дус",
 }  # fmt: skip
 """Whole words of a heading that say the kind of a sensor next to its axis or number."""

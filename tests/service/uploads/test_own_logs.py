@@ -89,6 +89,29 @@ LAYOUTS: dict[str, tuple[bytes, str, str]] = {
             above="// Update Rate: 100.0Hz\n// Filter: 42 Hz\n",
         ), "m/s²", "rad/s",
     ),
+    "ticks of a stated rate": (
+        written(
+            [clock("SampleTimeFine", counted(1e4)), *triad(xyz("Acc_*"), HANDS.force),
+             *triad(xyz("Gyr_*"), HANDS.turning)], "\t", above="// Output rate: 100.0Hz\n",
+        ), "m/s²", "rad/s",
+    ),
+    "turns by their axes alone": (
+        written([clock("T", seconds), *triad(xyz("A*"), HANDS.force / GRAVITY), *triad(xyz("R*"), DEGREES)], " "),
+        "g", "°/s",
+    ),
+    "brackets first, counts of a thermometer": (
+        written(
+            [clock("Time", moments("%d-%b-%Y %H:%M:%S.%f")),
+             *triad(xyz("*_ACCL_OUT [mg]"), HANDS.force / GRAVITY * 1e3),
+             *triad(xyz("*_GYRO_OUT [mdps]"), DEGREES * 1e3), ("TEMP_OUT", ["2560"] * len(DEGREES))],
+            above="[Log Started]\n",
+        ), "mg", "mdeg/s",
+    ),
+    "no headings": (
+        written([clock("5123", counted(1e3, 5123)), *triad(["1"] * 3, HANDS.force), *triad(["2"] * 3, DEGREES)]).split(
+            b"\n", 1
+        )[1], "m/s²", "°/s",
+    ),
 }  # fmt: skip
 """Each with the units of its accelerometers and gyros."""
 
@@ -120,6 +143,21 @@ def test_kinds_units_and_rate_of_a_log_are_proposed(client: httpx.Client, layout
     }
     assert units == {"accelerometer": {of_accelerometers}, "gyroscope": {of_gyros}}
     assert len(session["sensors"]) == 6
+    assert fields(found) == FACTS_OF_EVERY_LOG
+
+
+@pytest.mark.parametrize(
+    ("first", "started_at"),
+    [
+        (clock("time_ns", counted(1e9, EPOCH * 10**9)), "2026-03-01T08:59:50Z"),
+        (clock("Time", lambda t: moments("%Y-%m-%d %H:%M:%S.%f")(t) + " +0100"), "2026-03-01T09:59:50+01:00"),
+        (clock("Time", moments("%H:%M:%S.%f")), None),
+        (clock("Time (ms)", counted(1e3, 5000)), None),
+    ],
+)
+def test_a_session_starts_at_the_first_of_its_times(client: httpx.Client, first: Any, started_at: str | None) -> None:
+    found = previewed(client, written([first, *triad(xyz("Acc_*"), HANDS.force), *triad(xyz("Gyr_*"), HANDS.turning)]))
+    assert found["mapping"]["session"].get("started_at") == started_at
     assert fields(found) == FACTS_OF_EVERY_LOG
 
 
