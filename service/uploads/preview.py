@@ -73,8 +73,8 @@ def preview(
         is_remembered = False
         if mapping is None or _is_cut_anew(look, mapping):
             known = {} if mapping is None else mapping.get("session", {})
-            mapping, is_remembered = _proposed(storage, look, unit, unit_type, filename)
-            mapping = {**mapping, "session": {**mapping["session"], **known}}
+            mapping, is_remembered = ({}, False) if faults else _proposed(storage, look, unit, unit_type, filename)
+            mapping = {**mapping, "session": {**mapping.get("session", {}), **known}}
         complete = {**mapping, "format": FORMAT, "table": dict(look["taken"]), "columns": _columns_for(look, mapping)}
         layout_of(complete, filename)
         rows = Rows(complete["columns"], _seen(look), look["rows"])

@@ -62,6 +62,7 @@ class ColumnRow:
     """Words of the run, with their meaning."""
     all_words: str
     empty: bool
+    sensor: "SensorFields | None" = None
 
 
 @dataclass(frozen=True)
@@ -77,7 +78,7 @@ class SensorFields:
     @property
     def is_backwards(self) -> bool:
         """Whether it is a gyro whose input axis points against one of the block's axes."""
-        return self.kind == GYROSCOPE and sorted(self.axis.split()) == ["-1.0", "0.0", "0.0"]
+        return self.kind == GYROSCOPE and sorted(self.axis.split()) == ["-1", "0", "0"]
 
 
 @dataclass(frozen=True)
@@ -119,7 +120,6 @@ class LayoutPage:
     blocks: tuple[Choice, ...]
     places: tuple[FactField, ...]
     rare: tuple[FactField, ...]
-    sensors: tuple[SensorFields, ...]
     problems: tuple[Problem, ...]
     preview: tuple[tuple[str, ...], ...]
     headings: tuple[str, ...]
@@ -131,6 +131,7 @@ class LayoutPage:
     lines: tuple[str, ...] = ()
     """First lines of a text that cannot be cut yet."""
     so_far: SoFar | None = None
+    sensorless: bool = False
     is_sampled: bool = False
     """Whether only its first rows were read."""
     can_store: bool = False
@@ -174,7 +175,7 @@ def layout_page(carried: Carried, preview: Preview, form: LayoutForm, types: Seq
         blocks=_choices((ACCELEROMETER, GYROSCOPE), str(session.get("block", ""))),
         places=_fields(PLACES, session),
         rare=_fields(RARE, session),
-        sensors=tuple(_sensor(s, session) for s in session.get("sensors") or () if isinstance(s, dict)),
+        sensorless=not any(column.sensor for column in columns),
         problems=problems,
         arrangement=form.fields.get("arrangement", "") if half_angle_of(form.fields) is None else "",
         cone_angle=form.fields.get("cone_angle", ""),
@@ -197,7 +198,9 @@ def _choices(values: Sequence[str], chosen: str) -> tuple[Choice, ...]:
 
 def _columns(preview: Preview) -> Iterator[ColumnRow]:
     sensors, columns = _sensor_names(preview), preview.mapping["columns"]
-    kinds = kinds_of([column.get("as") for column in columns], preview.mapping["session"])
+    session = preview.mapping["session"]
+    kinds = kinds_of([column.get("as") for column in columns], session)
+    known = {s.get("name"): _sensor(s, session) for s in session.get("sensors") or () if isinstance(s, dict)}
     for place, (source, column) in enumerate(zip(preview.seen["columns"], columns, strict=True)):
         meaning = column.get("as") or ""
         words = column.get("words") or {}
@@ -213,6 +216,7 @@ def _columns(preview: Preview) -> Iterator[ColumnRow]:
             tuple(words.items()) if meaning == "run" else (),
             "\t".join(source["words"]),
             source["empty"] and not meaning,
+            known.get(meaning),
         )
 
 
@@ -228,7 +232,7 @@ def _sensor_names(preview: Preview) -> list[str]:
 def _meanings(meaning: str, sensors: Sequence[str]) -> Iterator[Choice]:
     yield Choice("", "left out", not meaning)
     for name in sensors:
-        yield Choice(name, say("reading of {name}", name=name), name == meaning)
+        yield Choice(name, name, name == meaning)
     for key in COLUMNS:
         yield Choice(key, LABELS.get(key, key), key == meaning)
     for name in sensors:
@@ -253,7 +257,7 @@ def _taken(preview: Preview) -> Iterator[tuple[str, str, tuple[Choice, ...]]]:
 
 def _row_fields(table: Mapping[str, Any], kind: str) -> Iterator[FactField]:
     if kind == "text":
-        yield FactField("sign", "or by this sign", "", "text")
+        yield FactField("sign", "Columns parted by another sign", "", "text")
         yield FactField("record", "Only rows that begin with", str(table.get("record", "")), "text")
     for key, label in (("header_row", "Headings in row"), ("first_row", "Readings from row")):
         if key in table and "header_row" in table:
@@ -273,7 +277,7 @@ def _text_of(session: Mapping[str, Any], key: str) -> str:
 
 def _sensor(sensor: Mapping[str, Any], session: Mapping[str, Any]) -> SensorFields:
     axis = sensor.get("nominal_axis") or ()
-    shown = " ".join(map(str, axis)) if isinstance(axis, list | tuple) else ""
+    shown = " ".join(str(part).removesuffix(".0") for part in axis) if isinstance(axis, list | tuple) else ""
     scale = sensor.get("nominal_scale")
     return SensorFields(
         str(sensor.get("name", "")),
