@@ -2,7 +2,9 @@
 
 envelope    the uploaded bytes and their mapping in one file: what is stored
 decoding    bytes of text → text            cutting  text → rows
+sampling    a long text → its beginning and later places
 grids       any table → cells, headings
+pivoting    one sensor a row → sensors side by side
 titles      rows above a table → facts      vocabulary, senses   words of headings, in four languages
 evidence    what values say                 triads, understand   headings and values → columns of a mapping
 kinds       kinds of columns                facts    columns and values → facts of a session

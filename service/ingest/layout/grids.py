@@ -66,6 +66,8 @@ class Grid:
     """Rows that follow one another, of a sample; None where all rows are here."""
     repeated: Sequence[Sequence[Cell]] = ()
     """Rows of its headings, which may come again below."""
+    lines: Sequence[int] = ()
+    """Lines of the rows; empty where they follow one another from the first."""
     unseen: int = 0
     """Rows of the file that are not here."""
 
@@ -76,7 +78,7 @@ class Grid:
 
     def place(self, column: int, row: int) -> str:
         """Place of a cell in the file; rows count from 1."""
-        line = row + int(self.taken.get("first_row", 1)) - 1
+        line = self.lines[row - 1] if self.lines else row + int(self.taken.get("first_row", 1)) - 1
         if self.kind == "xlsx":
             parts = {"column": letters_of(column + 1), "line": line, "taken": self.taken["sheet"]}
             return say("cell {column}{line} of the sheet {taken}", **parts)

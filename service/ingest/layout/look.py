@@ -14,6 +14,7 @@ from service.ingest.layout.decoding import NO_TEXT, encoding_of
 from service.ingest.layout.envelope import is_wrapped
 from service.ingest.layout.grids import Grid, grid_of, is_nothing, number_of
 from service.ingest.layout.mapping import layout_of
+from service.ingest.layout.pivoting import side_by_side
 from service.ingest.layout.reading import seconds_of, word_text
 from service.ingest.layout.sampling import Sample
 from service.ingest.xlsx import session_sheets, sheet_names
@@ -65,7 +66,7 @@ def look(content: bytes | Sample, filename: str, mapping: Json | None = None) ->
     stated = {} if mapping is None else layout_of(mapping, filename).table
     if is_session(content.head if isinstance(content, Sample) else content, filename):
         return {"session": True}
-    grid = grid_of(content, filename, stated)
+    grid = side_by_side(grid_of(content, filename, stated))
     if len(grid.headings) > MOST_COLUMNS:
         parts = {"headings": len(grid.headings), "most_columns": MOST_COLUMNS}
         text = say("has {headings} columns; a mapping takes at most {most_columns}; remove those not needed", **parts)

@@ -15,6 +15,7 @@ from service.ingest.layout.cutting import Cell
 from service.ingest.layout.grids import Grid, grid_of, is_nothing, number_of
 from service.ingest.layout.kinds import is_sensor
 from service.ingest.layout.mapping import ColumnMapping, Layout
+from service.ingest.layout.pivoting import side_by_side
 from service.ingest.layout.vocabulary import conversion, target_label
 
 FORMAT = "imu-session/1"
@@ -60,7 +61,7 @@ def document_of(
     declined = declined_by(layout.session.get("screening")) or ()
     if layout.session.get("programme") == IN_SERVICE:
         declined = (*declined, *JUDGED_BY_PARITY, "no-data")
-    grid = grid_of(content, filename, layout.table, declined)
+    grid = side_by_side(grid_of(content, filename, layout.table, declined))
     require_own(grid, layout, filename)
     decimal = str(grid.taken.get("decimal", "."))
     mapped_columns = [(k, column) for k, column in enumerate(layout.columns) if column.meaning]

@@ -18,6 +18,7 @@ from service.ingest.layout.cutting import BLANK, Cell, cut, readings_of
 from service.ingest.layout.envelope import StoredTable
 from service.ingest.layout.grids import NOTHING, Grid, grid_of, is_nothing, is_title
 from service.ingest.layout.mapping import ColumnMapping, Layout
+from service.ingest.layout.pivoting import side_by_side
 from service.ingest.layout.reading import FORMAT, WORDS, Before, in_unit, read, require_own, start_of_time
 from service.ingest.layout.sampling import sample_of
 
@@ -34,6 +35,8 @@ def long_text(table: StoredTable, filename: str, layout: Layout) -> "TextRows | 
     if sample is None:
         return None
     grid = grid_of(sample.first, filename, layout.table)
+    if side_by_side(grid) is not grid:
+        return None
     require_own(grid, layout, filename)
     mapped = tuple((k, column) for k, column in enumerate(layout.columns) if column.meaning)
     return TextRows(table, filename, layout, replace(grid, columns=()), sample.lines, mapped)

@@ -25,6 +25,12 @@ def clock(heading: str, write: Any, hands: Hands = HANDS) -> tuple[str, list[str
     return heading, [write(t) for t in hands.time]
 
 
+ONE_A_ROW = [
+    f"{1e3 * t + late:.0f},{name},{x:.5f},{y:.5f},{z:.5f}\n".encode()
+    for name, values, late in (("GYRO", DEGREES, 2), ("ACCEL", HANDS.force, 0), ("MAG", HANDS.force + 20, 1))
+    for t, (x, y, z) in zip(HANDS.time, values, strict=True)
+]
+"""Rows of a log with one sensor each."""
 LAYOUTS: dict[str, tuple[bytes, str, str]] = {
     "german": (
         written(
@@ -107,6 +113,15 @@ LAYOUTS: dict[str, tuple[bytes, str, str]] = {
             above="[Log Started]\n",
         ), "mg", "mdeg/s",
     ),
+    **{
+        name: (
+            b"t [ms],sensor,x,y,z\n" + b"".join(rows), "m/s²", "°/s",
+        )
+        for name, rows in (
+            ("a sensor after another", ONE_A_ROW),
+            ("a sensor a row", sorted(ONE_A_ROW, key=lambda row: int(row.split(b",")[0]))),
+        )
+    },
     "no headings": (
         written([clock("5123", counted(1e3, 5123)), *triad(["1"] * 3, HANDS.force), *triad(["2"] * 3, DEGREES)]).split(
             b"\n", 1
