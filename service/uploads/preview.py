@@ -89,7 +89,9 @@ def preview(
     asked = questions(complete["session"], rows)
     answered = {problem.field for problem in asked} | set(following_the_rate(complete["session"], rows))
     problems = (*asked, *(problem for problem in problems if problem.field not in answered))
-    partly = session or _read(complete, content, filename, is_part=True)[0]
+    partly = session
+    if session is None and not look["sampled"]:
+        partly, _ = _read(complete, content, filename, is_part=True)
     found = None if partly is None else so_far(storage, partly)
     return Preview(complete, fingerprint(look), is_remembered, look, session, problems, found)
 

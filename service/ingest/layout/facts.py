@@ -26,7 +26,7 @@ from service.ingest.layout.evidence import (
     turns_of,
 )
 from service.ingest.layout.kinds import is_sensor
-from service.ingest.layout.reading import moment_of
+from service.ingest.layout.times import moment_of
 from service.ingest.layout.triads import AXES, values_of
 from service.ingest.layout.understand import SeenColumn, Understood
 from service.ingest.layout.vocabulary import LETTERS, conversion, plain_label, unit_of

@@ -15,8 +15,9 @@ from service.ingest.layout.envelope import is_wrapped
 from service.ingest.layout.grids import Grid, grid_of, is_nothing, number_of
 from service.ingest.layout.mapping import layout_of
 from service.ingest.layout.pivoting import side_by_side
-from service.ingest.layout.reading import seconds_of, word_text
+from service.ingest.layout.reading import word_text
 from service.ingest.layout.sampling import Sample
+from service.ingest.layout.times import seconds_of
 from service.ingest.xlsx import session_sheets, sheet_names
 from service.kit.limits import refusal
 

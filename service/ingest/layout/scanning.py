@@ -19,8 +19,9 @@ from service.ingest.layout.envelope import StoredTable
 from service.ingest.layout.grids import NOTHING, Grid, grid_of, is_nothing, is_title
 from service.ingest.layout.mapping import ColumnMapping, Layout
 from service.ingest.layout.pivoting import side_by_side
-from service.ingest.layout.reading import FORMAT, WORDS, Before, in_unit, read, require_own, start_of_time
+from service.ingest.layout.reading import FORMAT, WORDS, in_unit, read, require_own, start_of_time
 from service.ingest.layout.sampling import sample_of
+from service.ingest.layout.times import Before
 
 TIME = "time_s"
 READ = 1024 * 1024
@@ -90,7 +91,7 @@ class TextRows:
         self._places.clear()
         for text in self._texts():
             count, skipped = text.count("\n"), max(self._first - lines, 0)
-            text = "".join(text.splitlines(keepends=True)[skipped:]) if skipped else text
+            text = "\n".join(text.split("\n")[skipped:])
             frame, kept = self._plain(text, before) or self._cut(text, before)
             self._places.append((rows, kept + (lines + skipped + 1)))
             rows, lines = rows + len(frame), lines + count
@@ -122,6 +123,8 @@ class TextRows:
             )  # fmt: skip
             cells = scan.select(str(k) for k, _ in self.mapped).collect()
         except pl.exceptions.PolarsError:
+            return None
+        if '"' in text and len(cells) != sum(bool(line.strip()) for line in text.split("\n")):
             return None
         columns: dict[str, pl.Series] = {}
         for k, column in sorted(self.mapped, key=lambda one: one[1].meaning == TIME):  # the others may be no plain ones

@@ -48,6 +48,7 @@ LOGS = {
     "past midnight": log(lambda t: moments("%H:%M:%S.%f")(t + 13.97 * 3600)),
     "decimal comma": log(lambda t: seconds(t).replace(".", "\\decimal"), ";", ","),
     "blanks": log(seconds, "  "),
+    "quotes": log(change=lambda cells: cells.__setitem__(slice(None), [f'"{cell}"' for cell in cells])),
     "UTF-16": log().decode().encode("utf-16"),
     "marked gaps": log(change=lambda cells: cells.__setitem__(slice(500, 505), ["n/a", "-", "NaN", " ", ""])),
 }
