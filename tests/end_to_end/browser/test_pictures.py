@@ -117,7 +117,7 @@ def test_pictures_of_the_tutorial(chromium: Browser, demonstration: str) -> None
         page.get_by_label("Axes").select_option("cone")
         taken(page, "own-columns", 1500)
         page.get_by_role("button", name="Look again").click()
-        preview = page.get_by_text("felt 9.8").locator("xpath=ancestor::section")
+        preview = page.get_by_text("measured 9.8").locator("xpath=ancestor::section")
         preview.screenshot(path=FOLDER / "own-preview.png")
         page.get_by_role("button", name="Store it", exact=True).click()
         page.get_by_role("heading", name="Reference set").wait_for()
@@ -138,4 +138,5 @@ def taken(page: Page, name: str, height: int) -> None:
     """A picture of what is seen of a page."""
     page.set_viewport_size({"width": 1280, "height": height})
     draw_all(page)
+    page.evaluate("scrollTo(0, 0)")
     page.screenshot(path=FOLDER / f"{name}.png")
