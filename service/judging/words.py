@@ -119,6 +119,14 @@ NOTHING_JUDGED = "Not judged: no parameter of this session has a tolerance."
 ALL_PASS = "Every parameter is within its tolerance by more than U; closest to it: {closest}."
 
 
+def by_defaults(unit_type: str) -> str:
+    """The sentence that the tolerances of a type are nobody's."""
+    return say(
+        "Nobody has entered tolerances for {unit_type}: the defaults are used, or 3 U where U exceeds them.",
+        unit_type=unit_type,
+    )
+
+
 def verdict_in_words(condition: Condition, reservations: Reservations) -> str:
     """A verdict with its reservations: ``Fit, but the bias of A2 has one step: repeat the session``."""
     return say("{word}{but}", word=condition.word, but=but(reservations)) if reservations != () else condition.word

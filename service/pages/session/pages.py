@@ -136,6 +136,8 @@ class SessionView:
     """Seconds after which the page looks again whether it is diagnosed; None where it is."""
     retired: str = ""
     """Remark that its unit is retired, with the date; empty where it is in use."""
+    no_tolerances: str = ""
+    """The type of its unit, where nobody has entered its tolerances."""
     causes: tuple[str, ...] = ()
     """Causes in the model of its calibration in force."""
     earlier: tuple[int, ...] = ()
@@ -155,6 +157,7 @@ def session_page(
     said: Remarks | None = None,
     retired: str = "",
     temperatures: CoveredTemperatures | None = None,
+    no_tolerances: str = "",
 ) -> SessionView:
     """The page of a session; ``model``: the causes that it was calibrated with, ``computed``: under which revisions."""
     calibration, decisions = report.calibration, report.decisions
@@ -195,6 +198,7 @@ def session_page(
         said=said,
         follow=follow,
         retired=retired,
+        no_tolerances=no_tolerances,
         causes=tuple(cause_on(revision.cause, revision.sensors) for revision in model),
         earlier=tuple(revision for revision in computed if revision != report.session.revision),
     )
