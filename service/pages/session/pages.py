@@ -49,6 +49,7 @@ from service.sessions.words.curves import CurvesInWords, curves_in_words
 from service.sessions.words.motion import MotionLine, motions_in_words
 from service.sessions.words.readings import (
     FitWords,
+    answer_in_words,
     bands_in_words,
     beside_screening,
     combination_in_words,
@@ -58,6 +59,10 @@ from service.sessions.words.readings import (
 
 NOTHING_KNOWN = Remedies()
 """Remedies of a session that counts."""
+
+
+FORCE = "g_sensitivity"
+"""Found of gyros that plainly have one; nothing judges it."""
 
 
 @dataclass(frozen=True)
@@ -164,6 +169,8 @@ def session_page(
     units = reading_units(calibration)
     judged = {(d.sensor, d.parameter): d for d in decisions}
     parameters = parameters_of(calibration)
+    if any(sensor.g_sensitivity is not None for sensor in calibration.sensors):
+        parameters = (*parameters, FORCE)
     coverage = nominal_factor_of(decisions)
     noise = noise_of(calibration.residuals, calibration)
     parity = None if calibration.parity is None else ParityResult.from_dict(calibration.parity)
@@ -237,7 +244,7 @@ def _cell(
 ) -> ParameterCell:
     return ParameterCell(
         parameter=parameter,
-        observable=sensor.observable.get(parameter, False),
+        observable=parameter == FORCE or sensor.observable.get(parameter, False),
         value=value_in_words(sensor, parameter, *coverage_and_unit),
         deviation=deviation_in_words(decision),
         tolerance=tolerance_in_words(decision),
@@ -255,6 +262,8 @@ def reading_units(calibration: Calibration) -> dict[str, str]:
 
 def value_in_words(sensor: SensorCalibration, parameter: str, coverage: float, reading_unit: str) -> str:
     """A parameter ± U, or that it is not observable; empty where the session does not concern it."""
+    if parameter == FORCE:
+        return "" if sensor.g_sensitivity is None else answer_in_words(sensor.g_sensitivity, coverage)
     if not sensor.observable.get(parameter, False):
         return "not observable" if parameter in sensor.observable else ""
     if parameter == "axis":
