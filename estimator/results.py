@@ -4,6 +4,7 @@ The JSON form is ``imu-calibration/1``.
 """
 
 from dataclasses import dataclass
+from enum import StrEnum
 from typing import Any
 
 import numpy as np
@@ -56,6 +57,35 @@ class KnownCombination:
     value: float
     sigma: float | None
     """One sigma of the value; None when the noise cannot be estimated."""
+
+
+class TurnsOutcome(StrEnum):
+    """What became of the turns by hand in a log of gyros."""
+
+    USED = "used"
+    """Scale factors and axes come from them."""
+    SCATTERED = "scattered"
+    """They scatter too much beside the recording's noise to be used."""
+    UNDETERMINED = "undetermined"
+    """They do not determine scale factors and axes."""
+    AVERAGED = "averaged"
+    """The log was averaged while it was scanned, so that it holds none."""
+
+
+@dataclass(frozen=True)
+class HandTurns(Document, optional=("turns", "parities")):
+    """The turns by hand between the rests of a log; unless they are used, the gyros keep their biases alone."""
+
+    outcome: TurnsOutcome
+    turns: float | None = None
+    """Scatter of the turns, in that of the recording's noise, where that was estimated; 1 where noise explains it."""
+    parities: float | None = None
+    """Scatter of the gyros among one another in the turns, likewise."""
+
+    @property
+    def scatter(self) -> float:
+        """The larger of both; 1 where none was estimated."""
+        return max(self.turns or 1.0, self.parities or 1.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,13 +224,13 @@ class Calibration(
     format="imu-calibration/1",
     order=(
         "unit", "method", "sensors", "fit", "gauge", "names", "units", "covariance", "repeatability", "residuals",
-        "site", "parity", "thermal", "screening", "set_aside",
+        "site", "parity", "thermal", "screening", "set_aside", "hand_turns",
     ),
     keys={
         "names": "covariance.names", "units": "covariance.units",
         "covariance": "covariance.total", "repeatability": "covariance.repeatability",
     },
-    optional=("site", "parity", "thermal", "screening", "set_aside"),
+    optional=("site", "parity", "thermal", "screening", "set_aside", "hand_turns"),
 ):  # fmt: skip
     """The calibration of one block: m sensors, P = 5 m parameters with their joint covariance."""
 
@@ -232,6 +262,8 @@ class Calibration(
     """Findings of the screening of the raw rows that it was made of, before they were averaged."""
     set_aside: tuple[SetAside, ...] = ()
     """Gross readings that took no part."""
+    hand_turns: HandTurns | None = None
+    """Of a log of accelerometers and three or more gyros in orientations set by hand."""
 
     def sensor(self, name: str) -> SensorCalibration:
         """The calibration of the sensor called ``name``; KeyError if there is none."""

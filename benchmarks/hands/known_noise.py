@@ -9,7 +9,7 @@ from estimator.calibration.free import accelerometer_rows, solve
 from estimator.calibration.free.by_hand import HandGyros, common, directions_of, knowledge, log_of
 from estimator.calibration.free.model import linearise
 from estimator.calibration.free.schedule import classified
-from estimator.hand_turns import calibrate_turned
+from estimator.hand_turns import TurnedGyros, calibrate_turned
 from estimator.session import CalibrationSession
 
 
@@ -24,5 +24,5 @@ def known_noise(session: CalibrationSession, sigma: float) -> HandGyros:
     of_rest = np.repeat(sigma / np.sqrt(log.stop - log.start)[:, None], gyro.sum(), axis=1)
     log = replace(log, noise=np.full(gyro.sum(), sigma**2), rest_sigma=of_rest)
     found = calibrate_turned(log, directions_of(solution, linear, len(log.start)))
-    assert found is not None
+    assert isinstance(found, TurnedGyros)
     return knowledge(found, np.ones(gyro.sum()), common(solution, linear, live, session), session)

@@ -23,7 +23,7 @@ from estimator.calibration.free.by_hand import directions_of, log_of
 from estimator.calibration.free.excess import explained
 from estimator.calibration.free.model import linearise
 from estimator.calibration.free.schedule import classified
-from estimator.hand_turns import RestDirections, TurnedLog, calibrate_turned
+from estimator.hand_turns import RestDirections, TurnedGyros, TurnedLog, calibrate_turned
 from estimator.hand_turns.model import BIAS, ExtraNoise, missed, turned, upright, weights
 from estimator.session import CalibrationSession
 
@@ -93,7 +93,7 @@ def as_imu_tk(log: TurnedLog, rests: RestDirections) -> Array:
 def ours(log: TurnedLog, rests: RestDirections) -> Array:
     """(3, 7) p of greatest likelihood."""
     found = calibrate_turned(log, rests)
-    assert found is not None
+    assert isinstance(found, TurnedGyros)
     return found.p
 
 
@@ -123,7 +123,7 @@ def table() -> str:
     known = recorded()
     log, rests = known.log, known.rests
     found = calibrate_turned(log, rests)
-    assert found is not None
+    assert isinstance(found, TurnedGyros)
     J = np.column_stack([(in_counts(found.p + h) - in_counts(found.p - h)) / 2e-6 for h in small_steps()])
     U = 2 * np.sqrt(np.diagonal(J @ found.covariance @ J.T))
     columns = [in_counts(p) for p in (factory(), as_imu_tk(log, rests), found.p)]

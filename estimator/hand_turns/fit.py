@@ -71,6 +71,14 @@ class TurnedGyros:
         return np.inf if known else max(self.dof, 1.0)
 
 
+@dataclass(frozen=True)
+class ScatteredTurns:
+    """Turns that contradict any scales and axes."""
+
+    noise: ExtraNoise
+    """Noise that would explain them."""
+
+
 @dataclass(frozen=True, eq=False)
 class TurnSearch:
     """A search and where it stands."""
@@ -104,9 +112,9 @@ class TurnSearch:
         return replace(self, free=free, p=p)
 
 
-def calibrate_turned(log: TurnedLog, rests: RestDirections) -> TurnedGyros | None:
-    """The gyros of greatest likelihood; None where the turns do not determine their scales and axes, or contradict any
-    scales and axes."""
+def calibrate_turned(log: TurnedLog, rests: RestDirections) -> TurnedGyros | ScatteredTurns | None:
+    """The gyros of greatest likelihood, or the turns where they contradict any scales and axes; None where they do not
+    determine them."""
     m = len(log.axes)
     if np.count_nonzero(log.whole) < FEWEST or m < BIAS or np.linalg.svd(log.axes, compute_uv=False)[-1] < PLAUSIBLE:
         return None
@@ -114,23 +122,31 @@ def calibrate_turned(log: TurnedLog, rests: RestDirections) -> TurnedGyros | Non
         log, rests, moments(log), np.ones(TERMS * m + 3, bool), ExtraNoise(np.zeros(m)), start(log, rests), np.zeros(3)
     )
     full = settled(begin.with_force(True))
-    if full is not None and answers_to_force(full):
-        return result(full) if holds(full) else None
-    plain = settled((full or begin).with_force(False))
-    return result(plain) if plain is not None and holds(plain) else None
+    if isinstance(full, TurnSearch) and answers_to_force(full):
+        return judged(full)
+    plain = settled((full if isinstance(full, TurnSearch) else begin).with_force(False))
+    if isinstance(plain, TurnSearch):
+        return judged(plain)
+    return plain or (full if isinstance(full, ScatteredTurns) else None)
 
 
-def holds(search: TurnSearch) -> bool:
+def judged(search: TurnSearch) -> TurnedGyros | ScatteredTurns:
+    """The result of a search, if the turns agree with the law."""
+    return result(search) if holds(search.noise) else ScatteredTurns(search.noise)
+
+
+def holds(noise: ExtraNoise) -> bool:
     """Whether turns and parities agree with the law, but for noise somewhat larger than the recording's."""
-    return max(search.noise.turns, search.noise.parities) <= CONTRADICTED
+    return max(noise.turns, noise.parities) <= CONTRADICTED
 
 
-def settled(search: TurnSearch) -> TurnSearch | None:
-    """The search at its end, under noise that explains what is left; None where it does not come to one."""
+def settled(search: TurnSearch) -> TurnSearch | ScatteredTurns | None:
+    """The search at its end, under noise that explains what is left; the noise alone where it leaves nothing
+    determined, None where nothing is from the start."""
     for _ in range(ROUNDS):
         found = searched(search)
         if found is None or not determined(found):
-            return None
+            return None if holds(search.noise) else ScatteredTurns(search.noise)
         noise = explaining(found)
         if alike(noise, found.noise):
             return found

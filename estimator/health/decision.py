@@ -14,7 +14,7 @@ from estimator.coverage import coverage_factor as factor_of
 from estimator.health.common_motion import AXES, CommonMotion, Split, common_motion
 from estimator.health.deviation import NOT_SEEN, Deviation, axis_offset, deviation
 from estimator.health.disc import judge_length
-from estimator.health.rule import SESSION_LEVEL, UNDECIDABLE, critical_factors, state
+from estimator.health.rule import SESSION_LEVEL, UNDECIDABLE, critical_factors, state, tolerance_of
 from estimator.health.temperature_law import NO_STEPS, Steps, TemperatureCorrection, at_reference, corrections
 from estimator.results import COVERAGE, Calibration, Estimate, SensorCalibration
 from estimator.session import Array
@@ -127,7 +127,8 @@ def judge(
     ----------
     calibration : what the session found.
     reference : what it is compared with; None when the session itself becomes the reference.
-    tolerances : T by (kind of sensor, parameter): relative for scale, else SI. A parameter without one is not judged.
+    tolerances : T by (kind of sensor, parameter), or by (sensor, parameter) where a sensor has its own: relative for
+        scale, else SI. A parameter without one is not judged.
     coverage_factor : k for known noise; with few degrees of freedom Student's t of the same probability.
     level : α, chance that a unit exactly at its reference is called out of tolerance in this session.
     splits : of `common_motion` over the two calibrations, at one temperature; found here when None.
@@ -144,7 +145,8 @@ def judge(
         _Case(sensor, origins.get(sensor.name), parameter, tolerance, parts.get((sensor.kind, parameter)))
         for sensor in calibration.sensors
         for parameter in PARAMETERS
-        if parameter in sensor.observable and (tolerance := tolerances.get((sensor.kind, parameter))) is not None
+        if parameter in sensor.observable
+        and (tolerance := tolerance_of(tolerances, sensor.name, sensor.kind, parameter)) is not None
     ]
     assessed = [None if reference is None else _assess(case, coverage_factor) for case in cases]
     judged = sum(a is not None and a.k * a.u <= case.tolerance for a, case in zip(assessed, cases, strict=True))

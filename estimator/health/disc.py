@@ -30,7 +30,8 @@ def disc_probability(center: Array, sigma: Array, radius: float) -> float:
     Parameters
     ----------
     center : (2,) mean, unit of the radius.
-    sigma : (2,) standard deviations along the same axes, same unit, both positive; the smaller one first resolves best.
+    sigma : (2,) standard deviations along the same axes, same unit, 0 where known exactly; the smaller one first
+        resolves best.
     radius : radius of the disc around the origin.
 
     Notes
@@ -45,6 +46,8 @@ def _chords(center: float, sigma: float, radius: float) -> tuple[Array, Array]:
     """Half chords (160,) of the disc across the first axis, unit of the radius; their probability weights (160,)."""
     if radius <= 0:
         return np.zeros(1), np.zeros(1)
+    if sigma == 0:
+        return np.sqrt([max(radius**2 - center**2, 0.0)]), np.array([float(abs(center) <= radius)])
     reach = (np.array([-REACH, REACH]) * sigma + center) / radius
     start, end = np.arcsin(np.minimum(np.maximum(reach, -1), 1))
     t = (end - start) / 2 * NODES + (end + start) / 2
@@ -55,7 +58,10 @@ def _chords(center: float, sigma: float, radius: float) -> tuple[Array, Array]:
 
 def _share(chord: Array, weight: Array, center: float, sigma: float) -> float:
     """Probability of the disc: weights (n,) times the probability of each half chord (n,) along the second axis."""
-    inside = ndtr((chord - center) / sigma) - ndtr((-chord - center) / sigma)
+    if sigma == 0:
+        inside = (np.abs(center) <= chord).astype(float)
+    else:
+        inside = ndtr((chord - center) / sigma) - ndtr((-chord - center) / sigma)
     return min(max(float(np.sum(weight * inside)), 0.0), 1.0)
 
 
@@ -64,7 +70,8 @@ def beyond_discs(centers: Array, sigmas: Array, radius: float) -> Array:
 
     Parameters
     ----------
-    centers, sigmas : (n, 2) means and standard deviations along the same axes, unit of the radius; all positive.
+    centers, sigmas : (n, 2) means and standard deviations along the same axes, unit of the radius; 0 where known
+        exactly.
     radius : radius of the disc around the origin.
 
     Returns
@@ -95,7 +102,7 @@ def judge_length(
     Parameters
     ----------
     vector : (2,) measured deviation, any unit (of an axis rad).
-    covariance : (2, 2) its covariance, positive definite, unit of the vector squared.
+    covariance : (2, 2) its covariance, positive semidefinite, unit of the vector squared.
     limit : the tolerance that the length is compared with, unit of the vector.
     coverage_factor : k for known noise; the one-sided level of the limits is Φ(k).
     dof : degrees of freedom of the covariance; None when the noise is known.
@@ -108,8 +115,10 @@ def judge_length(
     deviations enlarged by t/k, and the chance is that of deviations with which the nearest edge is as likely as by t.
     """
     variances, axes = eigh(covariance)
-    sigma = np.sqrt(variances)
+    sigma = np.sqrt(np.maximum(variances, 0.0))
     measured = float(np.hypot(*vector))
+    if sigma[1] == 0:
+        return Length(measured, 0.0, float(measured > limit))
     factor = student(coverage_factor, dof)
     wide = sigma * (factor / coverage_factor)
     upper, lower = (_length_with(p, measured, wide) for p in ndtr([-coverage_factor, coverage_factor]))

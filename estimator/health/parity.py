@@ -17,7 +17,7 @@ import numpy as np
 from scipy.special import chndtr, ndtr
 
 from estimator.health.decision import ParameterJudgement
-from estimator.health.rule import FAIL, PASS, UNDECIDABLE, state
+from estimator.health.rule import FAIL, PASS, UNDECIDABLE, state, tolerance_of
 from estimator.parity.as_calibration import before_faults
 from estimator.parity.results import SEVERAL, ParityResult, SensorParity, Sight
 from estimator.results import Calibration
@@ -44,7 +44,8 @@ def judge_parity(
     ----------
     result : of the recording.
     reference : the calibration that it was compared with.
-    tolerances : T by (kind of sensor, parameter): relative for scale, else SI.
+    tolerances : T by (kind of sensor, parameter), or by (sensor, parameter) where a sensor has its own: relative for
+        scale, else SI.
     coverage_factor : k.
     """
     known = before_faults(result)
@@ -52,7 +53,7 @@ def judge_parity(
         _judged(_ParityCase(known, sensor, parameter, tolerance), reference, coverage_factor)
         for sensor in known.sensors
         for parameter in PARAMETERS
-        if (tolerance := tolerances.get((result.kind, parameter))) is not None
+        if (tolerance := tolerance_of(tolerances, sensor.name, result.kind, parameter)) is not None
     )
     at_fault = {name for fault in result.faults for name in fault.suspects}
     return tuple(replace(j, **FAILED) if j.sensor in at_fault else j for j in judged)

@@ -33,6 +33,7 @@ reference is therefore called conditional-fail or fail in at most 1 % of its ses
 untouched: `pass` needs |y| + U ≤ T as before, and `fail` still needs |y| − U > T.
 """
 
+from collections.abc import Mapping
 from functools import cache
 
 from estimator.significance import critical_chi2, single_level
@@ -48,6 +49,11 @@ WITH_SESSION_LEVEL = ("ILAC-G8-four-state/2", RULE)
 """Versions that keep the level of the whole session, for papers of what was decided before."""
 SESSION_LEVEL = 0.01
 """α: one false alarm in a hundred sessions of a unit that has not changed."""
+
+
+def tolerance_of(tolerances: Mapping[tuple[str, str], float], sensor: str, kind: str, parameter: str) -> float | None:
+    """T of a parameter, relative for scale, else SI: the sensor's own, else that of its kind; None without one."""
+    return tolerances.get((sensor, parameter), tolerances.get((kind, parameter)))
 
 
 def state(size: float, expanded: float, tolerance: float, critical: float) -> str:

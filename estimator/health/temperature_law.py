@@ -24,6 +24,7 @@ from estimator.coverage import combined, coverage_factor
 from estimator.health.detection import LEVEL, most_likely
 from estimator.health.deviation import deviation
 from estimator.health.fits import LEAST, Readings
+from estimator.health.rule import tolerance_of
 from estimator.health.type_law import ENOUGH_WITH_TYPE, TypeLaw, worth_by
 from estimator.health.warmth import ENOUGH_TO_BEND, WARMED, chance_of, shown_columns
 from estimator.results import COVERAGE, Calibration, Estimate, SensorCalibration
@@ -124,7 +125,7 @@ def temperature_steps(
     ----------
     learned : the sessions before, the reference among them, in order of time.
     between : °C of the reference and of the session.
-    tolerances : T by kind of sensor and parameter, relative for scale, else SI.
+    tolerances : T by kind of sensor, or sensor, and parameter, relative for scale, else SI.
     laws : of the unit's type. By them, too, something is taken off where it leaves the parameter decidable.
     """
     of_type = {(law.kind, law.parameter): law for law in laws}
@@ -132,7 +133,7 @@ def temperature_steps(
         (sensor, parameter, allowed)
         for sensor in reference.sensors
         for parameter in FOLLOW
-        if (allowed := tolerances.get((sensor.kind, parameter))) is not None
+        if (allowed := tolerance_of(tolerances, sensor.name, sensor.kind, parameter)) is not None
     ]
     level = single_level(LEVEL, max(len(cases), 1))
     found = {

@@ -16,6 +16,7 @@ from estimator.applied_vector import EARTH_RATE, STANDARD_GRAVITY
 from estimator.causes import find
 from estimator.diagnosis import Finding
 from estimator.diagnosis.results import Structure
+from estimator.health.rule import tolerance_of
 from estimator.results import Calibration, Residuals
 from estimator.session import ACCELEROMETER, GYROSCOPE
 from service.kit.measures import leading_kind
@@ -71,7 +72,7 @@ class Yardstick:
     residuals: Residuals
     """Residuals under the baseline."""
     tolerances: Mapping[tuple[str, str], float]
-    """Tolerances by kind of sensor and parameter."""
+    """Tolerances by kind of sensor, or sensor, and parameter."""
 
 
 def size_of_cause(finding: Finding, yardstick: Yardstick) -> Size | None:
@@ -195,5 +196,5 @@ def _beside(
     yardstick: Yardstick, sensors: tuple[str, ...], kind: str, parameter: str, size: tuple[float, float | None]
 ) -> Size | None:
     """A size, with its standard uncertainty, beside the tolerance; None where there is none."""
-    tolerance = yardstick.tolerances.get((kind, parameter))
+    tolerance = tolerance_of(yardstick.tolerances, sensors[0] if sensors else "", kind, parameter)
     return None if tolerance is None else Size(sensors, kind, parameter, *size, tolerance)

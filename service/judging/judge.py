@@ -16,7 +16,7 @@ from estimator.results import Calibration
 from service.judging.calibrate import ReferenceComparison
 from service.judging.fault_words import faults_in_words
 from service.judging.temperature_words import far_from_reference
-from service.judging.words import first_in_words, reason, recording_in_words
+from service.judging.words import by_defaults, first_in_words, reason, recording_in_words
 from service.kit.lock_order import outside_writing
 from service.models.records import MovedParameter, MovedVerdict
 from service.sessions.decision import Decision, Judged, Opening, Verdict, worst_of
@@ -41,13 +41,15 @@ def judge(
 
     Without a reference it becomes the reference, unless it gives no uncertainty that later ones could be judged with.
     """
-    tolerances = tolerances_of(unit_type)
+    tolerances = tolerances_of(unit_type, reference or calibration)
     splits: tuple[Split, ...] = ()
     if reference is not None:
         splits = common_motion(at_reference(calibration, reference, steps), reference, tolerances)
     found = judge_parameters(
         calibration, reference, tolerances, coverage_factor=coverage_factor, splits=splits, steps=steps
     )
+    if not unit_type.are_entered:
+        found = _without_unseen(found, calibration, reference or calibration)
     decisions = _decisions(found, RULE, unit_type)
     blind = too_few(calibration)
     first = reference is None and not blind
@@ -56,7 +58,9 @@ def judge(
     return Judged(
         calibration=calibration,
         decisions=decisions,
-        reason=first_in_words(calibration, opening) if first else joined(" ", (reason(decisions, blind), *together)),
+        reason=first_in_words(calibration, opening)
+        if first
+        else said_of(unit_type, decisions, joined(" ", (reason(decisions, blind), *together))),
         is_reference=first,
         motions=motions,
     )
@@ -90,7 +94,7 @@ def judge_recording(
     Far from the temperatures of its calibration, ``celsius``, a change may be temperature's: it decides nothing. A
     sensor that fails within the recording fails at any temperature.
     """
-    tolerances = tolerances_of(unit_type)
+    tolerances = tolerances_of(unit_type, found.reference)
     seen = judge_parity(found.result, found.reference, tolerances, coverage_factor=coverage_factor)
     decisions = _decisions(seen, PARITY_RULE, unit_type)
     faults = faults_in_words(found.result, found.started_at)
@@ -103,7 +107,25 @@ def judge_recording(
             replace(decision, verdict=Verdict.UNDECIDABLE) if decision.verdict in FAILS else decision
             for decision in decisions
         )
+    said = said if faults else said_of(unit_type, decisions, said)
     return Judged(moved, decisions, said, is_reference=False, faults=faults)
+
+
+def said_of(unit_type: UnitType, decisions: tuple[Decision, ...], said: str) -> str:
+    """A verdict's reason; where nobody entered the tolerances that decided it, with that."""
+    return said if unit_type.are_entered or not decisions else joined(" ", (said, by_defaults(unit_type.name)))
+
+
+def _without_unseen(judgements: Iterable[ParameterJudgement], *pair: Calibration) -> tuple[ParameterJudgement, ...]:
+    """Judgements apart from parameters that no sensor of their kind shows in either session: nobody asked for them."""
+    shown = {
+        (s.kind, name)
+        for calibration in pair
+        for s in calibration.sensors
+        for name in s.observable
+        if s.observable[name]
+    }
+    return tuple(judgement for judgement in judgements if (judgement.kind, judgement.parameter) in shown)
 
 
 def _decisions(judgements: Iterable[ParameterJudgement], rule: str, unit_type: UnitType) -> tuple[Decision, ...]:

@@ -11,8 +11,9 @@ from datetime import datetime
 
 from estimator.codec import UnreadableError
 from estimator.errors import Problem, ScheduleError
+from estimator.health.rule import tolerance_of
 from estimator.message import say
-from estimator.results import Calibration, Estimate, SensorCalibration
+from estimator.results import Calibration
 from estimator.session import CALIBRATIONS, IN_SERVICE, comparable
 from service.ingest.checked import Checked
 from service.judging.covered import CoveredTemperatures, covered
@@ -20,6 +21,7 @@ from service.judging.covered_store import Covering
 from service.judging.records import Counted, UnitRecords
 from service.judging.store import Derivations
 from service.sessions.calibrations_store import Calibrations, calibration_of
+from service.sessions.expanded import expanded_of
 from service.sessions.records import PARAMETERS, StoredSession
 from service.sessions.store import Sessions
 from service.sessions.words.advice import too_few
@@ -166,23 +168,9 @@ def left_uncertain(
     """``A1 scale``: every parameter that has a tolerance and is not known to it."""
     for sensor in calibration.sensors:
         for parameter in PARAMETERS:
-            tolerance = tolerances.get((sensor.kind, parameter))
+            tolerance = tolerance_of(tolerances, sensor.name, sensor.kind, parameter)
             if tolerance is None or parameter not in sensor.observable:
                 continue
-            expanded = _expanded(sensor, parameter, coverage_factor)
+            expanded = expanded_of(sensor, parameter, coverage_factor)
             if expanded is None or expanded > tolerance:
                 yield say("{name} {parameter}", name=sensor.name, parameter=parameter)
-
-
-def _expanded(sensor: SensorCalibration, parameter: str, k: float) -> float | None:
-    """U, SI; of a scale factor relative. None where it is not known."""
-    if not sensor.observable[parameter]:
-        return None
-    if parameter == "axis":
-        sigma: float | None = sensor.axis_sigma
-    else:
-        estimate: Estimate = getattr(sensor, parameter)
-        sigma = estimate.sigma
-        if parameter == "scale" and sigma is not None and estimate.value:
-            sigma /= abs(estimate.value)
-    return None if sigma is None else sensor.factor(parameter, k) * sigma

@@ -20,8 +20,8 @@ from estimator.health.fits import Readings
 from estimator.health.prognosis import Track
 from estimator.health.temperature_law import NO_STEPS, Steps
 from estimator.health.warmth import Warmth
-from estimator.results import Calibration, Residuals
-from estimator.session import CALIBRATIONS, CalibrationSession
+from estimator.results import Calibration, Residuals, TurnsOutcome
+from estimator.session import CALIBRATIONS, GYROSCOPE, CalibrationSession
 from service.diagnosis.words.causes import UNKNOWN_CAUSE
 from service.judging.cause_sizes import Size, Yardstick, size_of_cause, size_of_structure
 from service.judging.covered import covered
@@ -37,9 +37,11 @@ from service.judging.words import (
     TOO_FEW,
     advice_on,
     advice_on_structure,
+    advice_on_turns,
     named,
     otherwise,
     size_in_words,
+    turns_in_words,
     unexplained,
     within,
 )
@@ -246,6 +248,7 @@ def reservations_of(session: Doubted) -> tuple[Reservation, ...]:
         *_of_structures(session),
         *_of_errors(session),
         *_of_readings(session),
+        *_of_turns(session.yardstick.calibration),
     )
     return tuple(sorted(found, key=lambda r: (list(Doubt).index(r.kind), -(r.share or 0.0))))
 
@@ -350,6 +353,15 @@ def _of_readings(session: Doubted) -> Iterable[Reservation]:
     """The reservation of a session without readings left over to look for causes in."""
     exact = session.yardstick.calibration.fit.is_exact and not session.findings
     return (Reservation(Doubt.NOT_CHECKED, TOO_FEW, ADD),) if exact else ()
+
+
+def _of_turns(calibration: Calibration) -> Iterator[Reservation]:
+    """The reservation of gyros that turns by hand gave no scale factors, or with a larger uncertainty."""
+    turns = calibration.hand_turns
+    if turns is None or (turns.outcome is TurnsOutcome.USED and turns.scatter == 1.0):
+        return
+    gyros = tuple(sensor.name for sensor in calibration.sensors if sensor.kind == GYROSCOPE)
+    yield Reservation(Doubt.HAND_TURNS, turns_in_words(turns), advice_on_turns(turns), gyros)
 
 
 def _in_words(size: Size | None) -> str:

@@ -136,6 +136,15 @@ class Derivations(Queries):
         self._session.execute(update(SessionRow).where(SessionRow.id.in_(tuple(ids))).values(basis=NOT_JUDGED))
         self._session.expire_all()
 
+    def wait_of_type(self, name: str) -> int:
+        """Leaves the accepted sessions of a type's units to be judged again; how many there are."""
+        units = select(UnitRow.id).join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
+        condition = SessionRow.unit_id.in_(units.where(UnitTypeRow.name == name)), IS_ACCEPTED
+        waiting = update(SessionRow).where(*condition).values(basis=NOT_JUDGED).returning(SessionRow.id)
+        found = len(self._session.scalars(waiting).all())
+        self._session.expire_all()
+        return found
+
     def waiting(self) -> tuple[str, ...]:
         """Serial numbers of units with accepted sessions that are to be judged or weighed."""
         query = select(UnitRow.serial).join(SessionRow, SessionRow.unit_id == UnitRow.id)

@@ -157,6 +157,8 @@ def _flag(row: FlagRow) -> OpenFlag:
 
 
 def _uncertain(document: bytes, unit_type: UnitTypeRow, tolerances: ToleranceRow) -> tuple[str, ...]:
-    """The parameters that a reference determines too poorly to be used by itself."""
-    allowed = tolerances_of(unit_type_of(unit_type, tolerances))
-    return tuple(left_uncertain(calibration_of(document), allowed, COVERAGE))
+    """The parameters that a reference determines too poorly to be used by itself, by tolerances that were entered."""
+    known = unit_type_of(unit_type, tolerances)
+    if not known.are_entered:
+        return ()
+    return tuple(left_uncertain(calibration_of(document), tolerances_of(known), COVERAGE))

@@ -8,7 +8,7 @@ from estimator.diagnosis.results import Structure
 from estimator.message import capitalised, joined, say, uncapitalised, without_stop
 from estimator.parity import ParityResult
 from estimator.parity.results import SEVERAL, Candidate
-from estimator.results import Calibration
+from estimator.results import Calibration, HandTurns, TurnsOutcome
 from service.diagnosis.words.causes import cause_on, choice_of
 from service.diagnosis.words.findings import MIXED_UP
 from service.fleet.condition import UnitSummary
@@ -105,6 +105,35 @@ def size_in_words(kind: str, parameter: str, size: tuple[float, float | None], t
     return say("{value}, {tolerance}", value=measured(value, COVERAGE * sigma, measure), tolerance=allowed)
 
 
+def turns_in_words(turns: HandTurns) -> str:
+    """``its gyros have no scale factors: their turns scatter 15 times as much as the noise``."""
+    match turns.outcome:
+        case TurnsOutcome.AVERAGED:
+            return "its gyros have no scale factors: the log was averaged while it was read, and its turns with it"
+        case TurnsOutcome.UNDETERMINED:
+            return "its gyros have no scale factors: its turns do not determine them"
+        case TurnsOutcome.SCATTERED:
+            scatter = number(turns.scatter, 1)
+            return say(
+                "its gyros have no scale factors: their turns scatter {scatter} times as much as the noise",
+                scatter=scatter,
+            )
+    return say(
+        "the turns of its gyros scatter {scatter} times as much as the noise, which their U includes",
+        scatter=number(turns.scatter, 1),
+    )
+
+
+def advice_on_turns(turns: HandTurns) -> str:
+    """The advice that gives gyros their scale factors, in a clause."""
+    match turns.outcome:
+        case TurnsOutcome.AVERAGED:
+            return "send a shorter log"
+        case TurnsOutcome.UNDETERMINED:
+            return "turn it by 60° or more between rests, about axes that differ and within the range of the gyros"
+    return "log faster, all sensors at the same instants, and turn it and set it down more gently"
+
+
 def within(sentence: str) -> str:
     """A sentence as a clause within another: names of sensors keep their capitals."""
     clause, head = without_stop(sentence), sentence.split()[0].rstrip(".")
@@ -117,6 +146,14 @@ CHOSEN = "Chosen as the reference: the unit's other sessions are judged against 
 OPENINGS = {Opening.FIRST: FIRST_SESSION, Opening.SERVICE: NEW_EPOCH, Opening.CHOSEN: CHOSEN}
 NOTHING_JUDGED = "Not judged: no parameter of this session has a tolerance."
 ALL_PASS = "Every parameter is within its tolerance by more than U; closest to it: {closest}."
+
+
+def by_defaults(unit_type: str) -> str:
+    """The sentence that the tolerances of a type are nobody's."""
+    return say(
+        "Nobody has entered tolerances for {unit_type}: the defaults are used, or 3 U where U exceeds them.",
+        unit_type=unit_type,
+    )
 
 
 def verdict_in_words(condition: Condition, reservations: Reservations) -> str:

@@ -212,6 +212,7 @@ PARAMETER_NAMES = {
     "quadratic": "quadratic term",
     "axis": "input axis",
     "misalignment": "misalignment",
+    "g_sensitivity": "g-sensitivity",
     SEVERAL: "bias, scale factor and axis together",
 }
 """Names of the parameters in sentences."""

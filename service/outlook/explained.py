@@ -8,7 +8,7 @@ possible it need not be there, so that u² = u'² + (1 − p)·δ² for the rest
 whole change. For a reference the part is taken off the origin of all later changes.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,6 +27,7 @@ from service.outlook.rules.histories import Left, Place
 from service.outlook.store import ChangeRow, ReferenceRow
 from service.sessions.calibrations_store import Calibrations
 from service.storage.queries import Store
+from service.types.records import UnitType
 from service.types.rules import tolerances_of
 from service.types.store import UnitTypes
 
@@ -58,13 +59,14 @@ def left_of(
     first = {(r.block, comparable(r.programme)): r.session for r in reversed(references)}
     against = {id: first[sessions[id]] for id in found if sessions[id] in first}
     known = Calibrations(store).in_force({*against, *against.values()})
-    tolerances = tolerances_of(UnitTypes(store).of_unit(serial))
+    of_type = UnitTypes(store).of_unit(serial)
     explained = (_ExplainedSession(id, found[id], known[id], known[reference]) for id, reference in against.items())
-    return {place: left for session in explained for place, left in _left(session, tolerances).items()}
+    return {place: left for session in explained for place, left in _left(session, of_type).items()}
 
 
 @outside_writing
-def _left(session: _ExplainedSession, tolerances: Mapping[tuple[str, str], float]) -> dict[Place, Left]:
+def _left(session: _ExplainedSession, of_type: UnitType) -> dict[Place, Left]:
+    tolerances = tolerances_of(of_type, session.reference)
     whole = {(j.sensor, j.parameter): j for j in judge(session.calibration, session.reference, tolerances)}
     rest = {(j.sensor, j.parameter): j for j in judge(session.found.calibration, session.reference, tolerances)}
     doubt, apart = _doubt(session.found.findings), _with_causes_of_their_own(session.found.findings)

@@ -50,6 +50,7 @@ from service.sessions.records import HistoryPoint
 from service.sessions.states import RecordState
 from service.sessions.store import Sessions
 from service.storage.queries import Store
+from service.types.store import UnitTypes
 from service.units.remarks_store import SaidOf
 from service.units.store import Register, Units
 from service.uploads.correct import remedies_of
@@ -157,6 +158,7 @@ def show_unit(
             said=remarks(serial, "", (), report.said.files, in_force().attached),
             history_of_custody=Register(store).history(serial),
             temperatures=covered_now(store, report),
+            types=UnitTypes(store).alike(report.unit_type),
         ),
     )
 
@@ -170,7 +172,7 @@ def show_session(
     report = session_report(store, id)
     made, said = report.diagnosis, SaidOf(store).session(report.session.unit, id)
     questioned = report.session.state is RecordState.QUESTIONED
-    failed = "" if made else report.failed
+    failed, of_type = "" if made else report.failed, UnitTypes(store).of_unit(report.session.unit)
     page = session_page(
         report,
         made,
@@ -183,6 +185,7 @@ def show_session(
         retired=retired_in_words(Register(store).get(report.session.unit)),
         said=remarks(report.session.unit, id, said.notes, said.files, in_force().attached),
         temperatures=covered_at(store, report.session),
+        no_tolerances="" if of_type.are_entered else of_type.name,
     )
     return render(request, "session.html", page)
 

@@ -89,6 +89,7 @@ GET /register
 GET /due
 GET {API}/fleet/due
 GET {API}/unit-types
+GET {API}/unit-types/{{name:path}}/proposal
 GET {API}/unit-types/{{name:path}}
 GET {API}/unit-types/{{name:path}}/diagnosis
 GET {API}/models
@@ -179,6 +180,7 @@ POST /sessions/{{id}}/reference
 POST /register/import
 POST /units/{{serial:path}}/retire
 POST /units/{{serial:path}}/return
+POST /units/{{serial:path}}/type
 POST /stands/{{name:path}}/certificates
 POST /stands/{{name:path}}/certificate-document
 POST /unit-types/{{name:path}}/tolerances
@@ -205,6 +207,7 @@ POST {API}/flags/{{id}}/acknowledge
 POST {API}/flags/{{id}}/resolve
 POST {API}/flags/{{id}}/assign
 POST {API}/flags/assign
+PUT {UNIT}/type
 PUT {API}/unit-types/{{name:path}}
 PUT {API}/unit-types/{{name:path}}/temperature-laws
 POST {API}/unit-types/{{name:path}}/preview

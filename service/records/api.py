@@ -18,11 +18,13 @@ from service.records.event_schemas import FoundAndLeftLine, FoundAndLeftSchema, 
 from service.records.preview import preview_service
 from service.records.supersede import successor_of, supersede_session
 from service.records.unit_changes import add_note
+from service.records.unit_type import set_type
 from service.sessions.schemas import DecisionSchema, ReceiptAnswer, SaidSession, said_session
 from service.sessions.sent import Replaced
 from service.sessions.states import RecordKind, RecordState, StateChange, Step
 from service.sessions.states_store import States
 from service.sessions.store import Sessions
+from service.types.records import UnitType
 from service.units.records import NewService, Note, Service, ServicePreview
 from service.units.remarks_store import Notes
 from service.units.store import Units
@@ -147,6 +149,24 @@ def choose(serial: Serial, new: NewReference, reception: ReceptionOf, now: Now, 
     session, _ = choose_reference(reception.storage, deriving(reception, now), new.session, step)
     reception.ring()
     return said_session(session)
+
+
+class NewType(Body, json_schema_extra={"example": {"unit_type": "RA-6", "by": "K. Ito", "why": "the maker's name"}}):
+    """Another type of a unit."""
+
+    unit_type: Text = Field(description="Name of the type; a new one where there is none of that name.")
+    by: Name = Field(description="Who moves it.")
+    why: Reason = Field(description="Why.")
+
+
+@router.put("/units/{serial:path}/type", responses=REFUSALS, tags=["units"])
+def move_to_type(serial: Serial, new: NewType, reception: ReceptionOf, now: Now, person: PersonOf) -> UnitType:
+    """Move the unit to another type with as many sensors of the same kinds: its sessions are judged by that one's
+    tolerances."""
+    step = Step(person.signs(new.by), now, new.why)
+    moved = set_type(reception.storage, deriving(reception, now), serial, new.unit_type.strip(), step)
+    reception.ring()
+    return moved
 
 
 @router.get("/units/{serial:path}/derivation", responses=errors(404, 422), tags=["units"])

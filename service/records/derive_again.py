@@ -228,7 +228,7 @@ def foresee_revisions(
 
 
 def _of_new_unit(store: Store, context: Deriving, made: Calibrated) -> Judging:
-    kind = type_of(made.checked, made.calibration)
+    kind = type_of(made.checked)
     kind = UnitTypes(store).find(kind.name) or kind
     return Judging(context.files, context.coverage_factor, context.at, ((context.at, kind),), {})
 

@@ -101,6 +101,17 @@ def derive_waiting_of(storage: Storage, context: Deriving, serial: str, most: in
     return _weigh_waiting(storage, context, serial, [session for session in counted if session.is_unweighed][:most])
 
 
+def judge_type(storage: Storage, context: Deriving, name: str) -> None:
+    """Judges what waits of the units of a type, before the background work comes to it."""
+    with storage.database.reading() as store:
+        serials = Units(store).of_type(name)
+    for serial in serials:
+        with ending_here("derivations", serial):
+            while derive_waiting_of(storage, context, serial, AT_ONCE):
+                pass
+        date(storage, context, serial)
+
+
 def judge_waiting(
     storage: Storage, context: Deriving, serial: str, most: int, only: tuple[str, ...] | None = None
 ) -> int:

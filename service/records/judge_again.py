@@ -259,7 +259,7 @@ def _steps(known: KnownUnit, place: Place, reference: Calibration, unit_type: Un
     assert between[0] is not None
     assert between[1] is not None
     steps, laws = (between[0], between[1]), unit_type.temperature_laws
-    return temperature_steps(seen, reference, steps, tolerances_of(unit_type), laws)
+    return temperature_steps(seen, reference, steps, tolerances_of(unit_type, reference), laws)
 
 
 def _of_recording(known: KnownUnit, rules: Judging, place: Place, unit_type: UnitType) -> Rejudgement:

@@ -30,6 +30,7 @@ from service.records.register import Entered, Entering, enter, move_unit
 from service.records.register_api import import_register
 from service.records.supersede import supersede_session
 from service.records.unit_changes import add_note, withdraw_note
+from service.records.unit_type import set_type
 from service.sessions.records import MARKS
 from service.sessions.sent import Replaced
 from service.sessions.states import Step
@@ -236,6 +237,16 @@ def move(
 def retire(serial: Key, by: By, why: Why, storage: StorageOf, now: Now, *, at: At = None) -> RedirectResponse:
     """Retires a unit."""
     move_unit(storage, serial, Move(remark=why, step=CustodyStep.RETIRED), by, now, at=at)
+    return RedirectResponse(f"/units/{quote(serial)}", SEE_OTHER)
+
+
+@router.post("/units/{serial:path}/type")
+def move_to_type(
+    serial: Key, unit_type: FormName, by: By, why: Why, reception: ReceptionOf, now: Now
+) -> RedirectResponse:
+    """Moves a unit to another type."""
+    set_type(reception.storage, deriving(reception, now), serial, unit_type.strip(), Step(by, now, why))
+    reception.ring()
     return RedirectResponse(f"/units/{quote(serial)}", SEE_OTHER)
 
 

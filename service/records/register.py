@@ -121,7 +121,10 @@ def _problems(entry: NewEntry, known: Registered | None, *, is_measured: bool) -
     if known is None and not entry.unit_type:
         found.append(Problem("unit_type", NO_TYPE))
     elif known is not None and is_measured and entry.unit_type not in (None, "", known.unit_type):
-        fault = say("is {type} by its sessions; leave the type out or write that", type=known.unit_type)
+        fault = say(
+            "is {type} by its sessions: leave the type out or write that, and change it on the unit's page",
+            type=known.unit_type,
+        )
         found.append(Problem("unit_type", fault))
     return found
 

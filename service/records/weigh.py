@@ -82,11 +82,12 @@ def weighing_of(store: Store, id: str, block: str) -> Weighing:
         basis = Basis(reference, unit_type, k, steps_in(decisions))
         temperatures = _temperatures(store, stored, basis, found.since)
     accepted = in_force([r for r in Models(store).of_session(id) if r.id <= stored.revision])
-    sensors = Calibrations(store).get(id).sensors if accepted else ()
+    own = Calibrations(store).get(id) if accepted or (basis is None and not unit_type.are_entered) else None
+    sensors = () if own is None else own.sensors
     return Weighing(
         verdict=stored.verdict if is_judged else None,
         basis=basis,
-        tolerances=tolerances_of(unit_type),
+        tolerances=tolerances_of(unit_type, own if basis is None else basis.reference),
         known=frozenset((r.cause, place) for r in accepted for place in places_of(r, sensors)),
         temperatures=temperatures,
         steps=steps_in(decisions),

@@ -110,6 +110,8 @@ class DoubtKind(StrEnum):
     """Structure that no known cause explains is large beside the tolerance."""
     STATED_ERRORS = "stated-errors"
     """The readings contradict the standard errors that the file states."""
+    HAND_TURNS = "hand-turns"
+    """Turns by hand gave its gyros no scale factors, or with a larger uncertainty."""
 
 
 @answer
@@ -122,7 +124,8 @@ class Reservation:
     for; ask again. `temperature`: it was measured far from the temperatures of the unit's reference and earlier
     sessions, which can make or hide a change. `cause`: a named cause takes more than a third of a tolerance.
     `other-model`: the verdict is another under a model that the readings leave standing. `unexplained`: so does
-    structure that no known cause explains. `stated-errors`: the readings contradict the standard errors of the file."""
+    structure that no known cause explains. `stated-errors`: the readings contradict the standard errors of the file.
+    `hand-turns`: turns by hand gave its gyros no scale factors and axes, or with a larger uncertainty."""
     text: str
     """Reason for the reservation, as a clause that stands after `but`."""
     advice: str

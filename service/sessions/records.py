@@ -306,3 +306,16 @@ class NoiseDocument(BaseModel):
     longest_s: float = Field(description="The longest of them, s.")
     lasted_s: float = Field(description="All together, s.")
     sensors: list[SensorNoiseSchema] = Field(description="In the order of the session.")
+
+
+@dataclass(frozen=True)
+class Achieved:
+    """A change of one parameter of one sensor from its reference; SI, relative of a scale factor."""
+
+    kind: str
+    parameter: str
+    deviation: float | None
+    """None for a reference."""
+    expanded: float | None
+    """U."""
+    tolerance: float

@@ -31,7 +31,15 @@ from service.kit.copying import copied
 from service.kit.moments import local, offset_minutes
 from service.sessions.decision import Decision, Verdict
 from service.sessions.doubt import Reservation, Reservations
-from service.sessions.records import UNWEIGHED, DiagnosisState, Digests, SessionOrder, SessionQuery, StoredSession
+from service.sessions.records import (
+    UNWEIGHED,
+    Achieved,
+    DiagnosisState,
+    Digests,
+    SessionOrder,
+    SessionQuery,
+    StoredSession,
+)
 from service.sessions.states import RecordState
 from service.sessions.states_store import IS_ACCEPTED, IS_BREAK
 from service.sessions.tables import CommonMotionRow, DecisionRow, SessionRow
@@ -50,6 +58,10 @@ NOT_JUDGED = ""
 def is_waiting(basis: InstrumentedAttribute[str | None]) -> ColumnElement[bool]:
     """Whether a session is to be judged, or to be weighed beside its verdict."""
     return or_(basis == NOT_JUDGED, basis.startswith(UNWEIGHED))
+
+
+MOST_ACHIEVED = 10_000
+"""Changes by which tolerances are proposed: those of some hundred sessions."""
 
 
 class Sessions(Queries):
@@ -198,6 +210,20 @@ class Sessions(Queries):
             .order_by(DecisionRow.position)
         )
         return tuple(decision_record(row) for row in rows)
+
+    def achieved(self, unit_type: str) -> tuple[Achieved, ...]:
+        """The changes in the latest accepted sessions of a type, each parameter of each sensor one."""
+        row = DecisionRow
+        query = (
+            select(row.kind, row.parameter, row.deviation, row.expanded, row.tolerance)
+            .join(SessionRow, (SessionRow.id == row.session_id) & (SessionRow.revision == row.revision))
+            .join(UnitRow, UnitRow.id == SessionRow.unit_id)
+            .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
+            .where(UnitTypeRow.name == unit_type, IS_ACCEPTED, SessionRow.programme.in_(CALIBRATIONS))
+            .order_by(SessionRow.started_at.desc(), SessionRow.id, row.position)
+            .limit(MOST_ACHIEVED)
+        )
+        return tuple(Achieved(*found) for found in self._session.execute(query))
 
     def temperature_steps(self, ids: Collection[str]) -> dict[str, Steps]:
         """The corrections for temperature of sessions, by session; without those that have none."""

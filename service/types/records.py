@@ -52,6 +52,11 @@ class UnitType:
     """Part of the tolerance from which on a change within it has a flag; a smaller one is a remark."""
     temperature_laws: tuple[TypeLaw, ...] = ()
     """Temperature laws common to the type's units, as far as in force."""
+    are_entered: bool = True
+    """Whether somebody entered the tolerances; else they are defaults, and a parameter whose reference is too uncertain
+    for its default is judged by three times the U of a change."""
+    holds_before: bool = False
+    """Whether the tolerances in force judge sessions from before them too."""
 
 
 @dataclass(frozen=True)
@@ -63,6 +68,7 @@ class ToleranceRevision:
     tolerances: Tolerances
     gyro_tolerances: Tolerances | None
     temperature_laws: tuple[TypeLaw, ...] = ()
+    are_entered: bool = True
 
 
 @dataclass(frozen=True)

@@ -45,7 +45,7 @@ class UnitTypes(Queries):
             **block,
         )
         if added:
-            self._add_tolerances(self._row(unit_type.name), unit_type.tolerances, unit_type.gyro_tolerances, now)
+            self._add_tolerances(self._row(unit_type.name), unit_type, now)
         elif self._complete(unit_type.name, block):
             self._set_first(unit_type)
 
@@ -96,7 +96,7 @@ class UnitTypes(Queries):
         """Every revision of a type's tolerances, oldest first."""
         query = select(ToleranceRow).join(UnitTypeRow).where(UnitTypeRow.name == name).order_by(ToleranceRow.revision)
         return tuple(
-            ToleranceRevision(row.revision, row.since, *_tolerances(row), _laws(row))
+            ToleranceRevision(row.revision, row.since, *_tolerances(row), _laws(row), row.are_entered)
             for row in self._session.scalars(query)
         )
 
@@ -117,11 +117,24 @@ class UnitTypes(Queries):
 
     def kinds(self, name: str) -> dict[str, str]:
         """The kind of every sensor in the latest calibration of a unit of the type."""
+        return self._kinds(UnitTypeRow.name == name)
+
+    def kinds_of_unit(self, serial: str) -> dict[str, str]:
+        """The kind of every sensor in the latest calibration of a unit."""
+        return self._kinds(UnitRow.serial == serial)
+
+    def alike(self, known: UnitType) -> tuple[str, ...]:
+        """Names of the other types with as many sensors of the same kinds."""
+        query = select(UnitTypeRow.name, UnitTypeRow.sensors).where(UnitTypeRow.block == known.block)
+        rows = self._session.execute(query.order_by(UnitTypeRow.name))
+        return tuple(name for name, sensors in rows if len(sensors) == len(known.sensors) and name != known.name)
+
+    def _kinds(self, condition: ColumnElement[bool]) -> dict[str, str]:
         latest = (
             select(SessionRow.id)
             .join(UnitRow, UnitRow.id == SessionRow.unit_id)
             .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
-            .where(UnitTypeRow.name == name, IS_ACCEPTED, SessionRow.programme.in_(CALIBRATIONS))
+            .where(condition, IS_ACCEPTED, SessionRow.programme.in_(CALIBRATIONS))
             .order_by(SessionRow.started_at.desc(), SessionRow.id)
             .limit(1)
         )
@@ -146,34 +159,31 @@ class UnitTypes(Queries):
 
     def revise(
         self,
-        name: str,
-        tolerances: Tolerances,
-        gyro_tolerances: Tolerances | None,
+        wanted: UnitType,
         now: datetime,
-        laws: tuple[TypeLaw, ...],
     ) -> UnitType:
         """Adds the next revision of a type's tolerances and temperature laws; earlier ones stay."""
-        row = self._row(name)
+        row = self._row(wanted.name)
         row.revision += 1
-        self._add_tolerances(row, tolerances, gyro_tolerances, now, laws)
+        self._add_tolerances(row, wanted, now)
         return self._record(row)
 
     def _add_tolerances(
         self,
         row: UnitTypeRow,
-        tolerances: Tolerances,
-        gyro_tolerances: Tolerances | None,
+        wanted: UnitType,
         now: datetime,
-        laws: tuple[TypeLaw, ...] = (),
     ) -> None:
         self._session.add(
             ToleranceRow(
                 unit_type_id=row.id,
                 revision=row.revision,
                 since=now,
-                tolerances=asdict(tolerances),
-                gyro_tolerances=None if gyro_tolerances is None else asdict(gyro_tolerances),
-                temperature_laws=[asdict(law) for law in laws] or None,
+                tolerances=asdict(wanted.tolerances),
+                gyro_tolerances=None if wanted.gyro_tolerances is None else asdict(wanted.gyro_tolerances),
+                temperature_laws=[asdict(law) for law in wanted.temperature_laws] or None,
+                are_entered=wanted.are_entered,
+                holds_before=wanted.holds_before,
             )
         )
         self._session.flush()
@@ -198,8 +208,10 @@ _THROUGH_TIME = (
 
 
 def held_at(known: TypeThroughTime, at: datetime) -> UnitType:
-    """The type with the tolerances in force at a time; with its first ones before that."""
-    return ([unit_type for since, unit_type in known if since <= at] or [known[0][1]])[-1]
+    """The type with the tolerances that judge a session of a time: the last ones until then, or later ones that hold
+    before; with its first ones where there are none.
+    """
+    return ([one for since, one in known if since <= at or one.holds_before] or [known[0][1]])[-1]
 
 
 def _with_tolerances() -> Select[UnitTypeRow, ToleranceRow]:
@@ -241,6 +253,8 @@ def unit_type_of(row: UnitTypeRow, tolerances: ToleranceRow) -> UnitType:
         maximum_interval_days=row.maximum_interval_days,
         flag_share=row.flag_share,
         temperature_laws=_laws(tolerances),
+        are_entered=tolerances.are_entered,
+        holds_before=tolerances.holds_before,
     )
 
 

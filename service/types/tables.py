@@ -34,5 +34,9 @@ class ToleranceRow(Base):
     since: Mapped[datetime]
     tolerances: Mapped[Json]
     gyro_tolerances: Mapped[Json | None] = mapped_column(JSON(none_as_null=True))
+    are_entered: Mapped[bool]
+    """Whether somebody entered them; else they are the defaults of each kind of sensor."""
+    holds_before: Mapped[bool]
+    """Whether they judge sessions from before them too."""
     temperature_laws: Mapped[list[Any] | None] = mapped_column(JSON(none_as_null=True))
     """`TypeLaw`, by which sessions are judged beside the tolerances; NULL where none hold."""

@@ -41,6 +41,12 @@ class Units(Queries):
         self._session.execute(statement.values(simulated=simulated))
         self._session.info.pop(("simulated", serial), None)
 
+    def set_type(self, unit: int, name: str) -> None:
+        """Records the type of a unit from now on."""
+        type_id = select(UnitTypeRow.id).where(UnitTypeRow.name == name).scalar_subquery()
+        self._session.execute(update(UnitRow).where(UnitRow.id == unit).values(unit_type_id=type_id))
+        self.touch(unit)
+
     def set_lot(self, serial: str, lot: str | None) -> str | None:
         """Records a unit's production lot, and returns the one before."""
         unit = self._session.scalars(select(UnitRow).where(UnitRow.serial == serial)).one()

@@ -270,7 +270,7 @@ def _unit(store: Store, received: Received, new: Calibrated) -> int:
     serial = new.checked.session.unit
     unit, is_demonstration = Units(store).held(serial), received.who == DEMONSTRATION
     if unit is None or not Units(store).exists(serial):
-        unit_type, is_simulated = type_of(new.checked, new.calibration), new.checked.session.is_simulated
+        unit_type, is_simulated = type_of(new.checked), new.checked.session.is_simulated
         UnitTypes(store).add_once(unit_type, received.at)
         Units(store).add_once(serial, unit_type.name, is_simulated)
         Units(store).begin(serial, unit_type.name, is_simulated, is_demonstration=is_demonstration)

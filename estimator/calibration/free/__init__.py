@@ -13,10 +13,12 @@ that pass neither predict held-out positions worse than none, and those that pas
 Source: multi-parameter optimisation paper, functional (5), in its maximum-likelihood form.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from estimator.applied_vector import gravity
-from estimator.calibration.free.by_hand import gyros_by_hand, with_cross
+from estimator.calibration.free.by_hand import HandGyros, gyros_by_hand, with_cross
 from estimator.calibration.free.excess import explained
 from estimator.calibration.free.gyros import GyroBiases, rest_biases
 from estimator.calibration.free.knowledge import merged, of_accelerometers, of_gyros, of_nothing
@@ -80,12 +82,13 @@ def calibrate_free(session: CalibrationSession, *, quadratic: bool | None = None
     gauge = "directions" if rows.held else NOMINAL_AXES
     at, gyros = np.flatnonzero(live), np.flatnonzero(gyro)
     by_hand = gyros_by_hand(session, used, live, gyro)
-    if by_hand is not None:
+    if isinstance(by_hand, HandGyros):
         everything = with_cross(merged([(at, known), *parts, (gyros, by_hand.known)]), gyros, at, by_hand.cross)
-        return report(session, everything, fit, gauge, dict(zip(gyros.tolist(), by_hand.answers, strict=True)))
+        answers = dict(zip(gyros.tolist(), by_hand.answers, strict=True))
+        return replace(report(session, everything, fit, gauge, answers), hand_turns=by_hand.turns)
     if gyro.any():
         parts.append((gyros, of_gyros(gyro_biases(session, gyro), scale[gyro], axes[gyro])))
-    return report(session, merged([(at, known), *parts]), fit, gauge)
+    return replace(report(session, merged([(at, known), *parts]), fit, gauge), hand_turns=by_hand)
 
 
 def residual_per_freedom(session: CalibrationSession) -> float:

@@ -13,11 +13,12 @@ from estimator.calibration.free.model import Linear, linearise
 from estimator.calibration.free.schedule import Mask
 from estimator.calibration.free.solve import Solution
 from estimator.forward import measured
-from estimator.hand_turns import RestDirections, TurnedGyros, TurnedLog, calibrate_turned
+from estimator.hand_turns import RestDirections, ScatteredTurns, TurnedGyros, TurnedLog, calibrate_turned
+from estimator.hand_turns.model import BIAS, ExtraNoise
 from estimator.hand_turns.quiet import quiet_ends
 from estimator.parameters import SensorParameters
-from estimator.results import ForceAnswer
-from estimator.screening.gaps import filled, smallest_steps, without_stray
+from estimator.results import ForceAnswer, HandTurns, TurnsOutcome
+from estimator.screening.gaps import ends, filled, smallest_steps, without_stray
 from estimator.session import Array, CalibrationSession, RawRests
 from estimator.static import Intervals, mean_errors
 
@@ -40,25 +41,40 @@ class HandGyros:
     """(5k, P) covariance with the accelerometers' parameters, SI; NaN of the quadratic terms."""
     answers: tuple[ForceAnswer | None, ...]
     """(k,) answers to force; None where they are not seen."""
+    turns: HandTurns
 
 
-def gyros_by_hand(session: CalibrationSession, solution: Solution, live: Mask, gyro: Mask) -> HandGyros | None:
-    """The gyros ``gyro`` (m,), by the solution of the accelerometers ``live`` (m,); None where the session holds no
-    turns, or they do not determine scales and axes."""
+def gyros_by_hand(
+    session: CalibrationSession, solution: Solution, live: Mask, gyro: Mask
+) -> HandGyros | HandTurns | None:
+    """The gyros ``gyro`` (m,), by the solution of the accelerometers ``live`` (m,); where the turns give no scales and
+    axes, why; None where the session is no log, or of fewer than three gyros."""
     raw = session.rests
-    if raw is None or len(raw.start) != len(session.readings) or not gyro.any():
+    if np.count_nonzero(gyro) < BIAS:
         return None
+    if raw is None:
+        return None if session.at_ends is None else HandTurns(TurnsOutcome.AVERAGED)
+    if len(raw.start) != len(session.readings):
+        return None
+    undetermined = HandTurns(TurnsOutcome.UNDETERMINED)
     if not (solution.knowledge.full and solution.knows_noise):
-        return None
+        return undetermined
     linear = linearise(solution.rows, solution.unknowns)
     log = log_of(session, raw, solution, live, gyro)
     if not (np.isfinite(log.rest).all() and not np.isnan(log.rest_sigma).any() and np.all(log.noise > 0)):
-        return None
+        return undetermined
     found = calibrate_turned(log, directions_of(solution, linear, len(log.start)))
     if found is None:
-        return None
+        return undetermined
+    if isinstance(found, ScatteredTurns):
+        return scattered(TurnsOutcome.SCATTERED, found.noise)
     scale = np.array([s.nominal_scale for s, is_gyro in zip(session.sensors, gyro, strict=True) if is_gyro])
     return knowledge(found, scale, common(solution, linear, live, session), session)
+
+
+def scattered(outcome: TurnsOutcome, noise: ExtraNoise) -> HandTurns:
+    """What became of the turns, with their scatter."""
+    return HandTurns(outcome, float(np.sqrt(noise.turns)), float(np.sqrt(noise.parities)))
 
 
 def directions_of(solution: Solution, linear: Linear, R: int) -> RestDirections:
@@ -107,7 +123,10 @@ def log_of(session: CalibrationSession, raw: RawRests, solution: Solution, live:
         start=rests.start,
         stop=rests.stop,
         seen=(raw.start[:MOST], raw.stop[:MOST]),
-        whole=(gaps[rests.start[1:]] == gaps[rests.stop[:-1]]) & (rests.start[1:] > rests.stop[:-1]) & ~missing,
+        whole=(gaps[rests.start[1:]] == gaps[rests.stop[:-1]])
+        & (rests.start[1:] > rests.stop[:-1])
+        & ~missing
+        & ~clipped(inputs, rests),
         rest=rests.means(calm),
         rest_sigma=np.where(weightless, np.inf, np.hypot(sigma, [s.bias_repeatability for s in sensors])),
         noise=np.maximum(np.median(sigma**2 * rests.samples[:, None], axis=0), np.where(np.isinf(least), 0.0, least)),
@@ -115,6 +134,15 @@ def log_of(session: CalibrationSession, raw: RawRests, solution: Solution, live:
         latitude=session.site.latitude,
         gravity=gravity(session.site),
     )
+
+
+def clipped(inputs: Array, rests: Intervals) -> Mask:
+    """(R − 1,) whether a gyro stands at the end of its range in a turn between the rests; readings (N, m)."""
+    at_end = ends(inputs)
+    stays = at_end[2:] * at_end[1:-1] * at_end[:-2]
+    count = np.concatenate([[0], np.cumsum(stays.any(axis=(1, 2)))])
+    last = len(count) - 1
+    return np.asarray(count[np.minimum(rests.start[1:], last)] > count[np.minimum(rests.stop[:-1], last)])
 
 
 def specific_force(samples: Array, solution: Solution, session: CalibrationSession, live: Mask) -> Array:
@@ -166,7 +194,8 @@ def knowledge(found: TurnedGyros, nominal: Array, with_directions: Array, sessio
         freedom=np.full(5 * k, found.freedom),
     )
     answers = tuple(ForceAnswer(G[i] / size[i], parts[i]) if found.force else None for i in range(k))
-    return HandGyros(known, np.where(seen[:, None], cross, np.nan), answers)
+    turns_used = scattered(TurnsOutcome.USED, found.noise)
+    return HandGyros(known, np.where(seen[:, None], cross, np.nan), answers, turns_used)
 
 
 def padded(values: Array, R: int) -> Array:

@@ -49,6 +49,7 @@ from service.sessions.words.curves import CurvesInWords, curves_in_words
 from service.sessions.words.motion import MotionLine, motions_in_words
 from service.sessions.words.readings import (
     FitWords,
+    answer_in_words,
     bands_in_words,
     beside_screening,
     combination_in_words,
@@ -58,6 +59,10 @@ from service.sessions.words.readings import (
 
 NOTHING_KNOWN = Remedies()
 """Remedies of a session that counts."""
+
+
+FORCE = "g_sensitivity"
+"""Found of gyros that plainly have one; nothing judges it."""
 
 
 @dataclass(frozen=True)
@@ -136,6 +141,8 @@ class SessionView:
     """Seconds after which the page looks again whether it is diagnosed; None where it is."""
     retired: str = ""
     """Remark that its unit is retired, with the date; empty where it is in use."""
+    no_tolerances: str = ""
+    """The type of its unit, where nobody has entered its tolerances."""
     causes: tuple[str, ...] = ()
     """Causes in the model of its calibration in force."""
     earlier: tuple[int, ...] = ()
@@ -155,12 +162,15 @@ def session_page(
     said: Remarks | None = None,
     retired: str = "",
     temperatures: CoveredTemperatures | None = None,
+    no_tolerances: str = "",
 ) -> SessionView:
     """The page of a session; ``model``: the causes that it was calibrated with, ``computed``: under which revisions."""
     calibration, decisions = report.calibration, report.decisions
     units = reading_units(calibration)
     judged = {(d.sensor, d.parameter): d for d in decisions}
     parameters = parameters_of(calibration)
+    if any(sensor.g_sensitivity is not None for sensor in calibration.sensors):
+        parameters = (*parameters, FORCE)
     coverage = nominal_factor_of(decisions)
     noise = noise_of(calibration.residuals, calibration)
     parity = None if calibration.parity is None else ParityResult.from_dict(calibration.parity)
@@ -195,6 +205,7 @@ def session_page(
         said=said,
         follow=follow,
         retired=retired,
+        no_tolerances=no_tolerances,
         causes=tuple(cause_on(revision.cause, revision.sensors) for revision in model),
         earlier=tuple(revision for revision in computed if revision != report.session.revision),
     )
@@ -233,7 +244,7 @@ def _cell(
 ) -> ParameterCell:
     return ParameterCell(
         parameter=parameter,
-        observable=sensor.observable.get(parameter, False),
+        observable=parameter == FORCE or sensor.observable.get(parameter, False),
         value=value_in_words(sensor, parameter, *coverage_and_unit),
         deviation=deviation_in_words(decision),
         tolerance=tolerance_in_words(decision),
@@ -251,6 +262,8 @@ def reading_units(calibration: Calibration) -> dict[str, str]:
 
 def value_in_words(sensor: SensorCalibration, parameter: str, coverage: float, reading_unit: str) -> str:
     """A parameter ± U, or that it is not observable; empty where the session does not concern it."""
+    if parameter == FORCE:
+        return "" if sensor.g_sensitivity is None else answer_in_words(sensor.g_sensitivity, coverage)
     if not sensor.observable.get(parameter, False):
         return "not observable" if parameter in sensor.observable else ""
     if parameter == "axis":

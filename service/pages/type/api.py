@@ -6,6 +6,7 @@ from fastapi import APIRouter
 from pydantic import Field
 
 from service.pages.type.laws import put_in_force
+from service.pages.type.proposal import proposed
 from service.pages.type.tolerances import Watch, preview_tolerances, set_tolerances
 from service.pages.unit.schemas import NewTolerances, TolerancesSchema, UnitTypePage
 from service.people.admission import PersonOf
@@ -43,6 +44,12 @@ def set_type_laws(name: TypeName, new: WantedTypeLaws, storage: StorageOf, now: 
     return put_in_force(storage, name, now, who=person.signs(new.by), why=new.why, wanted=new.in_force)
 
 
+@router.get("/{name:path}/proposal", responses=errors(404, 422))
+def propose(name: TypeName, store: Reading) -> WantedTolerances:
+    """Tolerances that the calibrations of the type's units keep so far, for a person to confirm; nothing is stored."""
+    return proposed(store, UnitTypes(store).get(name))
+
+
 @router.get("/{name:path}", responses=errors(404, 422))
 def read_unit_type(name: TypeName, store: Reading) -> UnitType:
     """One unit type with the tolerances that hold now."""
@@ -52,11 +59,11 @@ def read_unit_type(name: TypeName, store: Reading) -> UnitType:
 @router.put("/{name:path}", responses=errors(400, 404, 422))
 def change_tolerances(name: TypeName, new: NewTolerances, storage: StorageOf, now: Now, person: PersonOf) -> UnitType:
     """Other tolerances, from the next session on; another longest interval or share of the tolerance that has a flag,
-    at once. Past decisions keep theirs."""
+    at once. Past decisions keep theirs unless `stored_sessions` is true."""
     gyro = None if new.gyro_tolerances is None else _record(new.gyro_tolerances)
     watch = Watch(new.maximum_interval_days, new.flag_share)
     limits, who = (_record(new.tolerances), gyro), person.signs(CREW)
-    return set_tolerances(storage, name, *limits, now, watch=watch, who=who)
+    return set_tolerances(storage, name, *limits, now, watch=watch, who=who, stored=new.stored_sessions)
 
 
 @router.post("/{name:path}/preview", responses=errors(400, 404, 422))

@@ -5,7 +5,7 @@ other units that arrived meanwhile.
 """
 
 from collections.abc import Iterator
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from datetime import datetime
 from itertools import islice
 
@@ -52,7 +52,7 @@ def put_in_force(storage: Storage, name: str, now: datetime, *, who: str, why: s
         current = UnitTypes(store).hold(name)
         if not laws and (wanted or not current.temperature_laws):
             raise ConflictError(TOO_FEW if wanted else NONE_IN_FORCE)
-        new = UnitTypes(store).revise(name, current.tolerances, current.gyro_tolerances, now, laws)
+        new = UnitTypes(store).revise(replace(current, temperature_laws=laws, holds_before=False), now)
         Audit(store).write(
             now, who, "tolerances", name, {"why": why, "temperature_laws": [asdict(law) for law in laws]}
         )

@@ -32,7 +32,9 @@ from service.models.store import Models
 from service.pages.fleet.pages import FleetRow, UseCount, fleet_row, use_counts
 from service.pages.fleet.view import FleetView
 from service.pages.type.laws import laws_in_words, put_in_force
+from service.pages.type.proposal import proposed as proposed_by_sessions
 from service.pages.type.tolerances import (
+    STORED,
     ToleranceField,
     days,
     preview_page,
@@ -183,6 +185,10 @@ class TypePage:
     """Share of the tolerance, %, from which on a change has a flag, in the form."""
     laws: tuple[str, ...]
     """Temperature laws in force, in words."""
+    are_entered: bool
+    """Whether somebody entered the tolerances."""
+    is_proposed: bool
+    """Whether the form holds what the calibrations so far achieve."""
 
 
 def types_page(types: Sequence[TypeLine]) -> TypesPage:
@@ -190,8 +196,10 @@ def types_page(types: Sequence[TypeLine]) -> TypesPage:
     return TypesPage(tuple(map(_row, types)))
 
 
-def type_page(report: TypeReport, group: GroupSection | None = None) -> TypePage:
-    """The page of one type."""
+def type_page(
+    report: TypeReport, group: GroupSection | None = None, proposal: WantedTolerances | None = None
+) -> TypePage:
+    """The page of one type, with a ``proposal`` of tolerances in the form."""
     known = report.line.unit_type
     kinds = {name: report.kinds.get(name, known.block) for name in known.sensors}
     return TypePage(
@@ -207,10 +215,16 @@ def type_page(report: TypeReport, group: GroupSection | None = None) -> TypePage
         flags=flag_cards(report.flags),
         causes=accepted_causes(report.models),
         group=group,
-        fields=tolerance_fields(known),
+        fields=tolerance_fields(
+            known
+            if proposal is None
+            else replace(known, tolerances=proposal.tolerances, gyro_tolerances=proposal.gyro_tolerances)
+        ),
         days=days(known),
         share=share(known),
         laws=laws_in_words(known),
+        are_entered=known.are_entered,
+        is_proposed=proposal is not None,
     )
 
 
@@ -291,11 +305,12 @@ def set_limits(
     storage: StorageOf,
     now: Now,
 ) -> RedirectResponse:
-    """Other tolerances from the next session on, and the interval and the share at once."""
+    """Other tolerances from the next session on, or of stored ones too; the interval and the share at once."""
     with storage.database.reading() as store:
         asked = wanted(UnitTypes(store).get(name), form)
     limits, watch = (asked.tolerances, asked.gyro_tolerances), asked.watch
-    set_tolerances(storage, name, *limits, now, watch=watch, who=by, why=why, seen=seen)
+    is_stored = STORED in form
+    set_tolerances(storage, name, *limits, now, watch=watch, who=by, why=why, seen=seen, stored=is_stored)
     return RedirectResponse(f"/unit-types/{quote(name)}#tolerances", SEE_OTHER)
 
 
@@ -322,8 +337,10 @@ def preview_limits(
 
 
 @router.get("/unit-types/{name:path}")
-def show_type(request: Request, store: Reading, now: Now, name: Key) -> HTMLResponse:
-    """Shows one unit type: its tolerances and who set them, the nominal model, its units."""
-    return render(
-        request, "unit_type.html", type_page(type_report(store, name, now), group_section(store, Level.TYPE, name))
-    )
+def show_type(request: Request, store: Reading, now: Now, name: Key, *, proposed: bool = False) -> HTMLResponse:
+    """Shows one unit type: its tolerances and who set them, the nominal model, its units; with ``proposed`` tolerances
+    in the form.
+    """
+    report, group = type_report(store, name, now), group_section(store, Level.TYPE, name)
+    proposal = proposed_by_sessions(store, report.line.unit_type) if proposed else None
+    return render(request, "unit_type.html", type_page(report, group, proposal))

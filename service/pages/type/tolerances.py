@@ -22,11 +22,12 @@ from service.fleet.store import Fleet
 from service.judging.calibrate import ReferenceComparison
 from service.judging.judge import judge, judge_recording
 from service.judging.reference import reference_of
+from service.judging.store import Derivations
 from service.kit.measures import COVERAGE, Measure, deviation_measure, heading, in_measure
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
-from service.records.derive_again import Deriving
-from service.records.follow import date
+from service.records.derive_again import AT_ONCE, Deriving
+from service.records.follow import date, judge_type
 from service.sessions.calibrations_store import Calibrations
 from service.sessions.records import PARAMETERS
 from service.sessions.store import Sessions
@@ -44,7 +45,7 @@ LEAST, MOST = 1e-15, 1e6
 """SI; as the API has it."""
 SHORTEST, LONGEST = 1, 36_525
 """Days: from one to a hundred years."""
-INTERVAL, SHARE = "interval", "share"
+INTERVAL, SHARE, STORED = "interval", "share", "stored"
 
 
 @dataclass(frozen=True)
@@ -81,7 +82,7 @@ def tolerance_fields(known: UnitType) -> tuple[ToleranceField, ...]:
         ToleranceField(
             f"{kind}.{name}", _label(known, kind, name), _measure(kind, name).label, _text(kind, name, given)
         )
-        for kind, given in _kinds(known)
+        for kind, given in kinds_of(known)
         for name in PARAMETERS
     )
 
@@ -100,7 +101,7 @@ def wanted(known: UnitType, form: Mapping[str, str]) -> ToleranceForm:
     """Reads a form; RefusedError with every number that is none."""
     faults: list[Problem] = []
     read = {kind: Tolerances(**{name: _read(kind, name, given, form, faults) for name in PARAMETERS})
-            for kind, given in _kinds(known)}  # fmt: skip
+            for kind, given in kinds_of(known)}  # fmt: skip
     watch = _watch(known, form, faults)
     if faults:
         raise RefusedError("The tolerances cannot be set.", tuple(faults))
@@ -119,7 +120,7 @@ def _watch(known: UnitType, form: Mapping[str, str], faults: list[Problem]) -> W
     return Watch(interval, None if percent is None else percent / 100)
 
 
-def _kinds(known: UnitType) -> tuple[tuple[str, Tolerances], ...]:
+def kinds_of(known: UnitType) -> tuple[tuple[str, Tolerances], ...]:
     """Kinds of sensor with their tolerances; none of a type of which no unit was measured yet."""
     if not known.block:
         return ()
@@ -240,6 +241,8 @@ class PreviewPage:
     carried: tuple[tuple[str, str], ...]
     """Numbers as they were written, to be set as they are."""
     why: str
+    judges_stored: bool
+    """Whether stored sessions are to be judged by them too."""
 
 
 def preview_page(
@@ -259,6 +262,7 @@ def preview_page(
         share=share(other) if other.flag_share != known.flag_share else "",
         carried=tuple((key, value) for key, value in form.items() if key not in CARRIED_APART),
         why=form.get("why", ""),
+        judges_stored=STORED in form,
     )
 
 
@@ -276,14 +280,17 @@ def set_tolerances(
     who: str = "crew",
     why: str = "",
     seen: int | None = None,
+    stored: bool = False,
 ) -> UnitType:
-    """Adds a revision of the type's tolerances; the same ones again change nothing, and past decisions keep theirs.
+    """Adds a revision of the type's tolerances; the same ones again change nothing, and past decisions keep theirs,
+    unless ``stored`` sessions are to be judged by them too: then defaults are confirmed.
 
     ConflictError where ``seen``, the revision that somebody changed, is no longer the one in force.
 
     How units are watched holds for all units of the type at once.
     """
     undated: tuple[str, ...] = ()
+    unjudged = 0
     with storage.database.writing() as store:
         current = UnitTypes(store).hold(name)
         if seen is not None and seen != current.revision:
@@ -300,11 +307,16 @@ def set_tolerances(
             undated = tuple(Units(store).of_type(name))
             for serial in undated:
                 WorkQueue(store, WorkKind.OUTLOOK).enqueue_again(serial, now)
-        if (current.tolerances, current.gyro_tolerances) != (tolerances, gyro_tolerances):
+        wished = replace(current, tolerances=tolerances, gyro_tolerances=gyro_tolerances)
+        if stored or current != wished:
             before = asdict(current)
-            current = UnitTypes(store).revise(name, tolerances, gyro_tolerances, now, current.temperature_laws)
+            current = UnitTypes(store).revise(replace(wished, are_entered=True, holds_before=stored), now)
+            unjudged = Derivations(store).wait_of_type(name) if stored else 0
             Audit(store).write(now, who, "tolerances", name, {"before": before, **asdict(current), **said})
-    date(storage, Deriving(storage.files, COVERAGE, now), *undated)
+    context = Deriving(storage.files, COVERAGE, now)
+    if 0 < unjudged <= AT_ONCE:
+        judge_type(storage, context, name)
+    date(storage, context, *undated)
     return current
 
 
@@ -333,7 +345,7 @@ def preview_tolerances(store: Store, name: str, wanted: WantedTolerances, covera
     there is no such type.
     """
     known = UnitTypes(store).get(name)
-    other = replace(known, tolerances=wanted.tolerances, gyro_tolerances=wanted.gyro_tolerances)
+    other = replace(known, tolerances=wanted.tolerances, gyro_tolerances=wanted.gyro_tolerances, are_entered=True)
     units = sum(UnitTypes(store).uses(name)[name].verdicts.values())
     serials = tuple(unit.serial for unit in Fleet(store).units(FleetQuery(unit_type=name, limit=MOST_UNITS)))
     latest = FleetRows(store).latest_sessions(serials)

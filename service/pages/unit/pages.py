@@ -166,6 +166,8 @@ class UnitView:
     """The unit as found and as left; None where it was never marked as found."""
     custody: tuple[Custody, ...]
     """Locations and custodians, the latest first."""
+    types: tuple[str, ...]
+    """Names of the types that it could be moved to."""
     steps: Mapping[CustodyStep, str]
     """Steps of custody in words."""
     kinds: tuple[tuple[str, str], ...]
@@ -201,6 +203,7 @@ def unit_page(
     said: Remarks | None = None,
     history_of_custody: Sequence[Custody] = (),
     temperatures: CoveredTemperatures | None = None,
+    types: Sequence[str] = (),
 ) -> UnitView:
     """The page of a unit with the latest of every parameter, the history of its ``worst`` one, flags and notes, as
     found and as left, and when it must come back."""
@@ -232,6 +235,7 @@ def unit_page(
         group=group,
         remarks=said,
         custody=tuple(history_of_custody),
+        types=tuple(types),
         steps=STEPS,
         follow=follow,
     )

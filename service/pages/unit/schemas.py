@@ -49,6 +49,9 @@ class NewTolerances(Body):
         le=1,
         description="Part of the tolerance from which on a change within it has a flag; null keeps it.",
     )
+    stored_sessions: bool = Field(
+        default=False, description="Whether the stored sessions are judged by them too; defaults are then confirmed."
+    )
 
 
 class NewLot(Body):

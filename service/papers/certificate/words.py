@@ -30,7 +30,7 @@ from service.papers.words import (
 from service.sessions.decision import nominal_factor_of
 from service.sessions.words.conditions import CONDITIONS, Condition, but, condition_of
 from service.sessions.words.motion import motions_in_words
-from service.sessions.words.readings import FitWords, combination_in_words, fit_in_words
+from service.sessions.words.readings import FitWords, answer_in_words, combination_in_words, fit_in_words
 
 
 @dataclass(frozen=True)
@@ -201,6 +201,8 @@ class Certificate:
     pair: Pair | None
     known: tuple[Fact, ...]
     """Known combinations of parameters that the session cannot separate."""
+    force: tuple[Fact, ...]
+    """g-sensitivities of gyros, where they were found."""
     diagnosis: str
     causes: tuple[CertifiedCause, ...]
     fit: FitWords
@@ -213,6 +215,7 @@ def certificate(found: CertifiedSession, issue: Issue) -> Certificate:
     session, calibration, decisions = found.report.session, found.report.calibration, found.report.decisions
     k = nominal_factor_of(decisions)
     known = ((s.name, combination_in_words(c, s.kind)) for s in calibration.sensors for c in s.known)
+    answers = ((s.name, s.g_sensitivity) for s in calibration.sensors)
     return Certificate(
         title=title_of(session),
         paper=paper_of(found, issue),
@@ -236,6 +239,7 @@ def certificate(found: CertifiedSession, issue: Issue) -> Certificate:
         stage=spaced(session.stage or ""),
         pair=None if found.pair is None else pair_of(found.pair),
         known=tuple(Fact(name, words) for name, words in known),
+        force=tuple(Fact(name, answer_in_words(answer, k)) for name, answer in answers if answer is not None),
         diagnosis=found.diagnosis.summary,
         causes=causes_of(found),
         fit=fit_in_words(calibration),

@@ -5,12 +5,13 @@ from datetime import UTC, datetime
 
 from estimator.health import judge
 from estimator.health.parity import judge_parity
+from estimator.message import joined
 from estimator.session import IN_SERVICE
 from service.ingest.checked import Checked, as_checked, check
 from service.judging.calibrate import Calibrated, CalibrationBasis, calibrate
 from service.judging.fault_words import faults_in_words
 from service.judging.judge import as_decisions
-from service.judging.words import first_in_words, reason, recording_in_words
+from service.judging.words import by_defaults, first_in_words, reason, recording_in_words
 from service.papers.certified import ReferenceSession, SessionReport, StatedSession
 from service.papers.dcc.elements import plain
 from service.papers.dcc.inputs import RecomputationInputs
@@ -83,7 +84,9 @@ def _record(
 ) -> StoredSession:
     source = found.checked.session
     faults = _faults(found)
-    why = _reason(found, decisions, faults) if not inputs.is_reference else _opening(found, printed)
+    why = (
+        _opening(found, printed) if inputs.is_reference else _with_defaults(_reason(found, decisions, faults), printed)
+    )
     judged = Judged(found.calibration, decisions, why, is_reference=inputs.is_reference, faults=faults)
     return StoredSession(
         id=raw.sha256[:ID_DIGITS],
@@ -114,6 +117,12 @@ def _reason(found: Calibrated, decisions: tuple[Decision, ...], faults: tuple[Se
     if found.comparison is not None:
         return recording_in_words(found.comparison.result, decisions, faults)
     return reason(decisions, too_few(found.calibration))
+
+
+def _with_defaults(why: str, printed: Printed) -> str:
+    """The reason in the words of the printed certificate: the file does not tell who set the tolerances."""
+    by_nobody = joined(" ", (why, by_defaults(printed.unit_type)))
+    return by_nobody if printed.declared("Verdict").endswith(plain(by_nobody)) else why
 
 
 def _opening(found: Calibrated, printed: Printed) -> str:

@@ -1,13 +1,16 @@
 """Agreement of model and readings in words. The words fit and unfit are kept for units."""
 
 from dataclasses import dataclass, replace
-from math import isfinite, sqrt
+from math import isfinite, pi, sqrt
 
+import numpy as np
+
+from estimator.applied_vector import STANDARD_GRAVITY
 from estimator.calibration.gross_slips import sentences
 from estimator.message import joined, say, say_count
 from estimator.moments import duration
-from estimator.results import Calibration, Fit, KnownCombination
-from service.kit.measures import COVERAGE, MINUS, Measure, measured, number, scale_measure, value_measure
+from estimator.results import Calibration, Fit, ForceAnswer, KnownCombination
+from service.kit.measures import COVERAGE, MINUS, Measure, decimals, measured, number, scale_measure, value_measure
 from service.sessions.words.advice import too_few, what_to_add
 
 UNLIKELY = 0.001
@@ -166,6 +169,21 @@ def combination_in_words(known: KnownCombination, kind: str) -> str:
     total = measured(known.value, expanded, Measure(lead.measure.label, 1 / lead.coefficient)).rstrip()
     sign, product = MINUS if first[0] < 0 else "", _product(abs(first[0]), first[1])
     return say("{sign}{product}{rest} = {total}", sign=sign, product=product, rest=rest, total=total)
+
+
+FORCE = STANDARD_GRAVITY * 3600 * 180 / pi
+"""(°/h)/g in one (rad/s)/(m/s²)."""
+
+
+def answer_in_words(answer: ForceAnswer, k: float) -> str:
+    """``(120 ± 9, −3 ± 9, 14 ± 9) (°/h)/g``: a gyro's answer to specific force along the block's axes, ± U."""
+    expanded = k * FORCE * np.sqrt(np.diagonal(answer.covariance))
+    digits = decimals(float(expanded.max()))
+    parts = (
+        say("{value} ± {expanded}", value=number(float(value), digits), expanded=number(float(spread), digits))
+        for value, spread in zip(FORCE * answer.value, expanded, strict=True)
+    )
+    return say("({values}) (°/h)/g", values=joined(", ", parts))
 
 
 def _known_term(name: str, coefficient: float, kind: str) -> _Term:

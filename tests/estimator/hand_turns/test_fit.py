@@ -13,6 +13,7 @@ from estimator import calibrate
 from estimator.arrays import tangents
 from estimator.hand_turns.model import ExtraNoise, moments, parts
 from estimator.hand_turns.recording import RestDirections, TurnedLog
+from estimator.results import HandTurns, TurnsOutcome
 
 SHORT = World(rests=16, rest=3.0)
 
@@ -82,6 +83,8 @@ def test_gyros_that_lag_behind_one_another_give_no_scale_factors(late):
     readings[late:, 4] = readings[:-late, 4]
     found = calibrate(replace(truth.session, readings=readings))
     assert [s.scale.value for s in found.sensors[3:]] == [None] * 3
+    assert found.hand_turns.outcome is TurnsOutcome.SCATTERED
+    assert found.hand_turns.scatter > 3
     assert np.isfinite([s.bias.value for s in found.sensors[3:]]).all()
 
 
@@ -89,6 +92,17 @@ def test_a_turn_with_missing_samples_takes_no_part():
     truth, _ = calibrated(SHORT)
     readings = truth.session.readings.copy()
     readings[np.flatnonzero(truth.session.position == -1)[50:60], 3:] = np.nan
+    found = calibrate(replace(truth.session, readings=readings))
+    off = [(s.scale.value - truth.scale[i]) / s.scale.sigma for i, s in enumerate(found.sensors[3:])]
+    assert np.abs(off).max() < 4
+    assert found.hand_turns == HandTurns(TurnsOutcome.USED, 1.0, 1.0)
+
+
+def test_a_turn_beyond_the_range_of_a_gyro_takes_no_part():
+    truth, _ = calibrated(SHORT)
+    readings = truth.session.readings.copy()
+    turn = np.flatnonzero(truth.session.position == -1)[:20]
+    readings[turn, 3] = 2 * np.abs(readings[:, 3]).max()
     found = calibrate(replace(truth.session, readings=readings))
     off = [(s.scale.value - truth.scale[i]) / s.scale.sigma for i, s in enumerate(found.sensors[3:])]
     assert np.abs(off).max() < 4
@@ -105,6 +119,7 @@ def test_a_block_turned_about_one_axis_tells_no_scale():
     readings[:, 3:5] = readings[0, 3:5]
     found = calibrate(replace(truth.session, readings=readings))
     assert not any(s.observable["scale"] for s in found.sensors[3:])
+    assert found.hand_turns.outcome is TurnsOutcome.UNDETERMINED
 
 
 def likelihood(m=5, rests=9):

@@ -69,3 +69,14 @@ def test_the_order_of_the_components_does_not_matter() -> None:
     one = beyond_discs(np.array([[0.2, 0.9]]), np.array([[0.05, 0.5]]), 1.0)
     other = beyond_discs(np.array([[0.9, 0.2]]), np.array([[0.5, 0.05]]), 1.0)
     assert one == pytest.approx(other, abs=1e-12)
+
+
+@pytest.mark.parametrize("sigma", [(0.0, 0.0), (0.0, 1e-9), (1e-9, 0.0)])
+@pytest.mark.parametrize(("center", "beyond"), [((0.6, 0.6), 0.0), ((0.8, 0.8), 1.0)])
+def test_what_is_known_exactly_is_in_the_disc_or_beyond(
+    sigma: tuple[float, float], center: tuple[float, float], beyond: float
+) -> None:
+    assert beyond_discs(np.array([center]), np.array([sigma]), 1.0) == pytest.approx([beyond], abs=1e-9)
+    length = judge_length(np.array(center), np.diag(np.square(sigma)), 1.0, 2.0)
+    assert (length.value, length.expanded) == pytest.approx((np.hypot(*center), 0.0), abs=1e-8)
+    assert length.probability_beyond == pytest.approx(beyond, abs=1e-9)

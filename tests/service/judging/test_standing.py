@@ -20,7 +20,7 @@ def case() -> tuple[CalibrationSession, Diagnosis, Basis]:
     """A session whose A2 bends with the cube of the input, or, less likely, with its square."""
     session = read_session(drawn(ALIASES).session)
     found = diagnose(session)
-    unit_type = type_of(as_checked(session, NOON, session.unit), found.calibration)
+    unit_type = type_of(as_checked(session, NOON, session.unit))
     return session, found, Basis(found.calibration, unit_type, 2.0)
 
 

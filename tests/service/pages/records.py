@@ -26,7 +26,7 @@ def session_report(
     """The report of a session as the service would store it."""
     session = read_session(document or accelerometer_block())
     calibration = calibrate(session)
-    judged = judge(calibration, reference, type_of(as_checked(session, NOON, session.unit), calibration), 2.0)
+    judged = judge(calibration, reference, type_of(as_checked(session, NOON, session.unit)), 2.0)
     stored = StoredSession(
         id="5e55", unit=session.unit, sha256="5e55" * 16, filename="BA-017.json", size=12_345,
         programme=session.programme, stand="ODG-1", operator="K. Ito", notes="", started_at=NOON, uploaded_at=NOON,

@@ -18,9 +18,9 @@ def typed(holding: Holding) -> httpx.Client:
 
 
 def shown(client: httpx.Client) -> dict[str, str]:
-    """Fields of the form."""
+    """Fields of the form, for the sessions to come only."""
     form = html.fromstring(client.get(TYPE).text).xpath("//form[contains(@action, '/tolerances')]")[0]
-    return {str(name): str(value) for name, value in form.fields.items()}
+    return {str(name): str(value) for name, value in form.fields.items() if name != "stored"}
 
 
 def stored(client: httpx.Client) -> dict[str, object]:

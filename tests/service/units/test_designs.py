@@ -1,6 +1,5 @@
 """Units whose files name no type share one with units of their design, and with no others."""
 
-import json
 from datetime import UTC, datetime
 
 import pytest
@@ -9,24 +8,9 @@ from service.storage import Storage
 from service.units.store import Register
 from service.uploads.receive import upload
 from tests.databases import all_on_both_engines as pytest_generate_tests  # noqa: F401 - the hook
-from tests.service.made_sessions import session_bytes
+from tests.service.made_sessions import in_counts
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
-
-
-def in_counts(unit: str, counts_a_volt: float, rounding: float = 1.0) -> bytes:
-    """A session of a unit whose readings are counts of a converter."""
-    document = json.loads(session_bytes(unit=unit))
-    sensors = [
-        s | {"reading_unit": "LSB", "nominal_scale": s["nominal_scale"] * counts_a_volt * rounding}
-        for s in document["sensors"]
-    ]
-    names = {s["name"] for s in sensors} | {f"{s['name']}_se" for s in sensors}
-    table = {
-        name: [value * counts_a_volt for value in column] if name in names else column
-        for name, column in document["table"].items()
-    }
-    return json.dumps(document | {"sensors": sensors, "table": table}).encode()
 
 
 def type_of(storage: Storage, serial: str) -> str:
