@@ -80,12 +80,15 @@ class TypeUse:
     """Number of units with an accepted session, by verdict; every verdict is a key."""
 
 
+@answer
 @dataclass(frozen=True)
 class WantedTolerances:
-    """Tolerances that somebody tries."""
+    """Tolerances that somebody tries, or that are proposed."""
 
     tolerances: Tolerances
+    """Tolerances of the block's sensors."""
     gyro_tolerances: Tolerances | None
+    """Tolerances of its gyros where it has accelerometers too; else null."""
 
 
 @dataclass(frozen=True)

@@ -25,6 +25,7 @@ from service.queue.store import WorkQueue
 from service.sessions.records import DiagnosisState
 from service.settings import Settings
 from service.storage import Storage
+from service.uploads.receive import upload
 from service.work import readers as read_diagnosis
 from service.work.helper import Helper
 from service.work.kinds import DIAGNOSES, LEASE, MOST_ATTEMPTS
@@ -39,6 +40,8 @@ from tests.serving import http_client
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 REFERENCE, LATER = (json.dumps(warm(m, f"2026-0{m}-05T08:00:00Z")).encode() for m in (1, 3))
+OTHER = json.dumps(warm(1, "2026-02-05T08:00:00Z") | {"unit": "another"}).encode()
+"""A session of another unit."""
 ID = session_id(LATER)
 SPOIL = text("UPDATE calibrations SET document = :document WHERE session_id = :id")
 
@@ -157,9 +160,10 @@ def test_what_the_program_fails_at_is_tried_some_times_beside_the_requests(
 
 @pytest.mark.usefixtures("patient_readers")
 def test_one_failure_does_not_keep_the_next_from_its_diagnosis(spoilt: Storage, settings: Settings) -> None:
+    upload(spoilt, OTHER, "other.json", NOW)
     with http_client(create_app(settings.model_copy(update={"diagnosis_workers": 1}))) as client:
-        for content in (LATER, REFERENCE):
+        for content in (LATER, OTHER):
             client.get(f"/api/v1/sessions/{session_id(content)}/diagnosis")
     with spoilt.database.reading() as store:
-        states = [Diagnoses(store).summary(session_id(content)) for content in (REFERENCE, LATER)]
+        states = [Diagnoses(store).summary(session_id(content)) for content in (OTHER, LATER)]
     assert [state and state.state for state in states] == [DiagnosisState.NAMED, DiagnosisState.FAILED]

@@ -16,7 +16,7 @@ from tests.service.made_sessions import session_bytes
 from tests.service.uploads.test_questioned_page import in_mv
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
-MOST = 12
+MOST = 13
 HTML = {"Accept": "text/html"}
 UNIT = "BA-017"
 SERVICE = {"at": "2026-02-10T09:00:00Z", "kind": "repair", "note": "", "by": "K. Ito"}
