@@ -7,7 +7,7 @@ right. Beside them, sessions where a shared course would be wrong.
 import argparse
 import os
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from multiprocessing import get_context
@@ -23,7 +23,7 @@ from scipy.stats import chi2, ncx2
 from benchmarks.details import in_full, publish
 from benchmarks.study.rates import rate
 from benchmarks.study.report import table
-from estimator import diagnose, read_session
+from estimator import Diagnosis, diagnose, read_session
 from tests.blind.courses import BLOCKS, COURSES, Driven, draw_apart, draw_course
 from tests.blind.steps import OTHERS, RAMPS, WALKS, Block, Stepped, draw_others
 
@@ -134,11 +134,11 @@ def others_seen(hidden: Driven | Stepped, m: int) -> bool:
     return bool(squares[:-1].sum() + m - 1 > chi2.isf(LEVEL, m - 1))
 
 
-def perform(wish: Wish) -> Answer:
+def perform(wish: Wish, diagnosing: Callable[..., Diagnosis] = diagnose) -> Answer:
     """Draw and diagnose."""
     hidden = drawn(wish)
     session, begun = read_session(hidden.session), process_time()
-    named = diagnose(session).findings
+    named = diagnosing(session).findings
     seconds = process_time() - begun
     shared = [f for f in named if f.shared is not None]
     away = None

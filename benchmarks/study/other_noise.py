@@ -17,7 +17,7 @@ from benchmarks.study.stated_noise import HIDDEN, NOISE, restated
 from benchmarks.study.stated_noise import Wish as Stated
 from benchmarks.study.turned_pairs import PROGRAMMES, Programme, draw_pair
 from benchmarks.study.turned_pairs import Wish as Pair
-from estimator import diagnose, read_session
+from estimator import Diagnosis, diagnose, read_session
 from tests.blind.case import Case, Draw, written
 from tests.blind.cases import KINDS, LONGEST, TRIES
 from tests.blind.draw import draw_session
@@ -178,10 +178,10 @@ def wishes(sessions: int, seed: int) -> Iterator[Wish]:
         yield from (Wish(world, True, (seed, number, 1, k)) for k in range(with_effect))
 
 
-def perform(wish: Wish) -> Answer:
+def perform(wish: Wish, diagnosing: Callable[..., Diagnosis] = diagnose) -> Answer:
     """Draw and diagnose."""
     hidden = WORLDS[wish.world](wish)
-    found = diagnose(read_session(hidden.session), history=[read_session(h) for h in hidden.history])
+    found = diagnosing(read_session(hidden.session), history=[read_session(h) for h in hidden.history])
     names = {f.cause for f in found.findings}
     offered = names | {other for f in found.findings for other in f.alternatives}
     return Answer(wish, bool(names - {NOISE}), bool(hidden.causes & offered), found.unexplained)

@@ -1,7 +1,7 @@
 """Names given when the standard errors in the file are wrong, of one sensor, some or all, too large or too small."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from copy import deepcopy
 from dataclasses import dataclass
 from itertools import product
@@ -12,7 +12,7 @@ import numpy as np
 from benchmarks.details import in_full
 from benchmarks.study.rates import rate
 from benchmarks.study.report import table
-from estimator import diagnose, read_session
+from estimator import Diagnosis, diagnose, read_session
 from tests.blind.case import Case
 from tests.blind.cases import draw_case
 from tests.blind.catalogue import CATALOGUE, DISCRETE
@@ -67,11 +67,11 @@ def wishes(sessions: int, seed: int) -> Iterator[Wish]:
         yield Wish(factor, who, hidden, place, HIDDEN[(7 * k + 3 * WHO.index(who) + round(10 * factor)) % len(HIDDEN)])
 
 
-def perform(wish: Wish) -> Answer:
+def perform(wish: Wish, diagnosing: Callable[..., Diagnosis] = diagnose) -> Answer:
     """Draw, state wrongly, diagnose."""
     case = stated_case(wish)
     session = restated(case.session, wish)
-    found = diagnose(read_session(session), history=[read_session(restated(h, wish)) for h in case.history])
+    found = diagnosing(read_session(session), history=[read_session(restated(h, wish)) for h in case.history])
     names = {f.cause for f in found.findings}
     offered = names | {other for f in found.findings for other in f.alternatives}
     truth = {t.effect.cause for t in case.truths}

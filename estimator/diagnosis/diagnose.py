@@ -3,7 +3,7 @@
 record → residuals → signatures → selection → explanation
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from estimator.calibration.calibrate import as_it_came, averaged, calibrate
@@ -44,12 +44,16 @@ from estimator.diagnosis.selection.start import begin
 from estimator.diagnosis.turntable import diagnose_alignment
 from estimator.session import ROTATION_ALIGNMENT, CalibrationSession
 
+Search = Callable[[SearchState], SearchState]
+"""What finds the causes of a session, from nothing found to what holds."""
+
 
 def diagnose(
     session: CalibrationSession,
     history: Sequence[CalibrationSession] = (),
     *,
     catalogue: Sequence[Cause] = CATALOGUE,
+    search: Search = accepted,
 ) -> Diagnosis:
     """Diagnoses a session from its own readings: the effects that the simulation lacks.
 
@@ -60,6 +64,7 @@ def diagnose(
     session : of a programme that calibrates a block; of an alignment on a turntable, where lever arms are looked for.
     history : earlier sessions of the unit, oldest first.
     catalogue : the causes to consider.
+    search : finds causes in a session whose record is right: by rules, or `posterior`, which is to replace them.
 
     Raises
     ------
@@ -67,7 +72,7 @@ def diagnose(
     """
     if session.programme == ROTATION_ALIGNMENT:
         return diagnose_alignment(session)
-    return diagnosed(put_right(session, history, catalogue), catalogue)
+    return diagnosed(put_right(session, history, catalogue), catalogue, search)
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,26 +117,26 @@ def switched_on_like(earlier: CalibrationSession, session: CalibrationSession) -
     return replace(earlier, switched_on=None if since is None else first - since)
 
 
-def diagnosed(session: PutRight, catalogue: Sequence[Cause]) -> Diagnosis:
+def diagnosed(session: PutRight, catalogue: Sequence[Cause], search: Search = accepted) -> Diagnosis:
     """Diagnoses a session whose record is corrected.
 
     What looks like gravity and cannot be is a factor of all sensors: the history is then brought to their scale.
     """
-    found = diagnosed_so(session, catalogue)
+    found = diagnosed_so(session, catalogue, search)
     if not any(map(is_beyond_gravity, found.findings)):
         return found
     scales, earlier = on_one_scale(session.right, session.earlier, tuple(catalogue), least=0.0)
-    return diagnosed_so(replace(session, scales=scales, earlier=earlier), catalogue) if scales else found
+    return diagnosed_so(replace(session, scales=scales, earlier=earlier), catalogue, search) if scales else found
 
 
-def diagnosed_so(session: PutRight, catalogue: Sequence[Cause]) -> Diagnosis:
+def diagnosed_so(session: PutRight, catalogue: Sequence[Cause], search: Search) -> Diagnosis:
     """Diagnoses a session whose record is corrected, with the history as it is."""
     rows, right, earlier = session.rows, session.right, session.earlier
     wrong = impossible_axes(right, earlier, catalogue)
-    state = initial_state(right, earlier, catalogue) if wrong else searched(right, earlier, catalogue)
+    state = initial_state(right, earlier, catalogue) if wrong else searched(right, earlier, catalogue, search)
     entry = None if earlier or wrong else wrong_entry(without_effects(state, amplitudes(state)), catalogue)
     if entry is not None:
-        state = searched(baseline_of(entry.corrected(right.session)), earlier, catalogue)
+        state = searched(baseline_of(entry.corrected(right.session)), earlier, catalogue, search)
     fitted = amplitudes(state)
     new = are_new(state, fitted)
     calibration = extended_calibration(state, fitted)
@@ -167,9 +172,9 @@ def impossible_axes(right: Baseline, history: Sequence[Baseline], catalogue: Seq
     return wrong if entry is None else implausible_axes(baseline_of(entry.corrected(session)), expected)
 
 
-def searched(right: Baseline, history: Sequence[Baseline], catalogue: Sequence[Cause]) -> SearchState:
+def searched(right: Baseline, history: Sequence[Baseline], catalogue: Sequence[Cause], search: Search) -> SearchState:
     """The causes found in a session whose record is right."""
-    return accepted(initial_state(right, history, catalogue))
+    return search(initial_state(right, history, catalogue))
 
 
 def initial_state(right: Baseline, history: Sequence[Baseline], catalogue: Sequence[Cause]) -> SearchState:

@@ -2,33 +2,34 @@
 
 import json
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from estimator import diagnose, read_session
+from estimator import Diagnosis, diagnose, read_session
 from estimator.causes.catalogue import CATALOGUE
 from tests.blind.case import Case
 from tests.blind.cases import LEFT_OUT
 from tests.blind.score import Outcome, score
 
 
-def examine(case: Case, dump: str | None = None) -> Outcome:
+def examine(case: Case, dump: str | None = None, diagnosing: Callable[..., Diagnosis] = diagnose) -> Outcome:
     """The marks of a case; with a folder, its files are left there when it went wrong."""
     start = time.perf_counter()
-    found = diagnosed(case)
+    found = diagnosed(case, diagnosing)
     outcome = score(case, found, time.perf_counter() - start)
     if dump and not outcome.good:
         _dump(Path(dump), outcome, case, found)
     return outcome
 
 
-def diagnosed(case: Case) -> dict[str, Any]:
+def diagnosed(case: Case, diagnosing: Callable[..., Diagnosis]) -> dict[str, Any]:
     """The diagnosis' answer, from the files alone; a failure of the numerics counts as a wrong name and goes on."""
     try:
         session = read_session(case.session)
         left_out = {t.effect.cause for t in case.truths} if case.kind == LEFT_OUT else set()
         known = [cause for cause in CATALOGUE if cause.identifier not in left_out]
-        return diagnose(session, history=[read_session(h) for h in case.history], catalogue=known).to_dict()
+        return diagnosing(session, history=[read_session(h) for h in case.history], catalogue=known).to_dict()
     except (ArithmeticError, ValueError) as error:
         wrong = {"cause": f"failure: {error}", "sensors": [], "alternatives": []}
         return {"findings": [wrong], "unexplained": False}

@@ -51,12 +51,17 @@ class FreeCourse:
     @classmethod
     def of(cls, trace: Array, z: Array, m: int) -> "FreeCourse":
         """The course of traces (n, m·w) of every sensor's waves in turn and residuals z (n,), standard errors."""
-        gram, along = trace.T @ trace, trace.T @ z
         w = trace.shape[1] // m
-        apart = np.linalg.solve(gram + RIDGE * np.eye(len(gram)), along).reshape(m, w)
+        return cls.of_products((trace.T @ trace).reshape(m, w, m, w), (trace.T @ z).reshape(m, w))
+
+    @classmethod
+    def of_products(cls, gram: Array, along: Array) -> "FreeCourse":
+        """The course of the products ``gram`` (m, w, m, w) and ``along`` (m, w) of every sensor's waves."""
+        m, w = along.shape
+        apart = np.linalg.solve(gram.reshape(m * w, m * w) + RIDGE * np.eye(m * w), along.ravel()).reshape(m, w)
         left, size, right = np.linalg.svd(apart, full_matrices=False)
         start = right[0] * np.sqrt(w), left[:, 0] * size[0] / np.sqrt(w)
-        return max((cls._at(gram.reshape(m, w, m, w), along.reshape(m, w), g, start) for g in SIZES), key=_evidence)
+        return max((cls._at(gram, along, g, start) for g in SIZES), key=_evidence)
 
     @classmethod
     def _at(cls, gram: Array, along: Array, g: float, start: tuple[Array, Array]) -> "FreeCourse":

@@ -1,0 +1,61 @@
+"""An unknown course of the applied vector: an error of stand, fixture or reference that no cause describes.
+
+Every sensor sees a change δn of the applied vector through its axis, e·δn: as a smooth course of up to three components
+along some order, anew at every row, as a change that stays, or as a wave. No sensor's own fault hides there: half of
+its energy lies in parity space.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from estimator.arrays import eigh
+from estimator.causes.contract import Setting
+from estimator.diagnosis.posterior.blocks import ColumnBlocks, TermColumns
+from estimator.diagnosis.posterior.kernels import HIGHEST, wave
+from estimator.diagnosis.posterior.layout import InputLayout
+from estimator.diagnosis.posterior.priors import COMMON_COURSE, SIZES
+from estimator.diagnosis.posterior.term import COURSE, UnknownCourse
+from estimator.diagnosis.residuals.whitened import WhitenedResiduals
+from estimator.diagnosis.signatures.applied_course import CourseHypothesis, components, hypotheses
+
+SEEN = 5e-3
+"""Share of the most visible direction of a course below which one counts as none."""
+
+
+class AppliedCourses(ColumnBlocks):
+    """Courses of the applied vector, half of the prior on those of a kernel and half on waves."""
+
+    named = False
+
+    def __init__(self, residuals: WhitenedResiduals) -> None:
+        setting, layout = residuals.baseline.setting, InputLayout.of(residuals)
+        families = [list(hypotheses(setting)), list(waves(setting))]
+        blocks = []
+        for family in families:
+            shown = [h for h in family if np.any(h.columns)]
+            prior = float(np.log(COMMON_COURSE / len(families) / max(len(shown), 1)))
+            blocks += [block(residuals, layout, h, prior) for h in shown]
+        super().__init__(blocks, SIZES)
+
+
+def block(residuals: WhitenedResiduals, layout: InputLayout, course: CourseHypothesis, log_prior: float) -> TermColumns:
+    """The columns of a course at a unit of size, directions that hardly show left out."""
+    peak = (np.sqrt((course.columns**2).sum(axis=-1)) / layout.unit).max()
+    shown = residuals.trace(course.columns / peak)
+    size, turn = eigh(shown.T @ shown)
+    turn = turn[:, size > SEEN * size[-1]] / peak
+    known = UnknownCourse(course.order, course.components, course.lift @ turn)
+    return TermColumns((COURSE, ()), layout.whole(course.columns @ turn), log_prior, course=known)
+
+
+def waves(setting: Setting) -> Iterator[CourseHypothesis]:
+    """Waves of the applied vector's turns around β, and over the session."""
+    if setting.beta is None:
+        return
+    place = np.arange(setting.rows) / setting.rows
+    tried = [("β", wave(setting.beta * k)) for k in range(1, HIGHEST + 1)]
+    tried += [("the order measured", wave(2 * np.pi * k * place)) for k in range(1, setting.rows // 2)]
+    for order, columns in tried:
+        for part in components(setting)[:2]:
+            yield CourseHypothesis(order, (part.words,), part.columns[..., None] * columns[:, None, :], columns[None])

@@ -1,0 +1,204 @@
+"""The likeliest terms of a session, in the noise that is likeliest with them."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+
+import numpy as np
+from scipy.special import logsumexp
+
+from estimator.causes.contract import Signature
+from estimator.diagnosis.posterior.applied_courses import AppliedCourses
+from estimator.diagnosis.posterior.common_causes import CommonCauses
+from estimator.diagnosis.posterior.free_shared import FreeShared
+from estimator.diagnosis.posterior.information import InputInformation
+from estimator.diagnosis.posterior.moved_parameters import MovedParameters
+from estimator.diagnosis.posterior.noise import (
+    OtherNoise,
+    beside,
+    columns_of,
+    of_noisy_sensors,
+    of_quiet_sensors,
+    off_by_a_factor,
+    with_tails,
+)
+from estimator.diagnosis.posterior.noisy_sensors import NoisySensors
+from estimator.diagnosis.posterior.own_courses import OwnCourses
+from estimator.diagnosis.posterior.refine import refined
+from estimator.diagnosis.posterior.search import Remainder, TermModel, search
+from estimator.diagnosis.posterior.sensor_causes import SensorCauses
+from estimator.diagnosis.posterior.shared_causes import SharedCauses
+from estimator.diagnosis.posterior.term import NOISE, PlaceCandidate, Term
+from estimator.diagnosis.posterior.wandering import WanderingZeros
+from estimator.diagnosis.residuals.baseline import Baseline
+from estimator.diagnosis.residuals.likelihood import log_likelihood_ratio
+from estimator.diagnosis.residuals.whitened import WhitenedResiduals
+from estimator.session import Array
+
+ResidualsOf = Callable[[Baseline], WhitenedResiduals]
+
+SEARCHES = 3
+"""Searches at most, each in the noise that the terms of the one before leave."""
+
+SETTLED = 0.05
+"""Relative change of a variance below which it stands: hundreds of readings tell it to some per cent."""
+
+ROUNDS = 2
+"""Times that every shape is moved to its best beside the others."""
+
+LOSES = 1.0
+"""ln posterior odds that a candidate must lose beside a term to be a rival of it: a factor of e."""
+
+
+@dataclass(frozen=True, eq=False)
+class SessionTerms:
+    """A session's residuals with all kinds of terms that may act in it."""
+
+    residuals: WhitenedResiduals
+    T: Array
+    """(n, D) whitened residuals by a change of the inputs."""
+    single: SensorCauses
+    shared: SharedCauses
+    model: TermModel
+
+    @classmethod
+    def of(cls, residuals: WhitenedResiduals, catalogue: Sequence[Signature]) -> "SessionTerms":
+        """The kinds of a catalogue's causes, and those of everything else."""
+        start, T = InputInformation.of(residuals)
+        single = SensorCauses(residuals, catalogue)
+        shared = SharedCauses(single)
+        of_causes = (single, CommonCauses(residuals, catalogue), shared, FreeShared(residuals))
+        makers = (OwnCourses, NoisySensors, AppliedCourses, WanderingZeros, MovedParameters)
+        return cls(residuals, T, single, shared, TermModel(start, of_causes, tuple(make(residuals) for make in makers)))
+
+
+@dataclass(frozen=True, eq=False)
+class Noisy:
+    """A sensor noisier than stated."""
+
+    sensor: int
+    ratio: float
+    """Variance over the stated one."""
+    log_evidence: float
+    """ln B against the stated noise."""
+    log_prior: float
+    course: float
+    """Probability that it is an unknown course instead."""
+    freedom: float
+    """Number of readings that tell it."""
+
+
+@dataclass(frozen=True, eq=False)
+class TermSolution:
+    """The likeliest terms of a session in one noise."""
+
+    session: SessionTerms
+    terms: tuple[Term, ...]
+    log_evidence: float
+    """ln posterior odds against nothing in the noise as stated."""
+    noise: OtherNoise | None = None
+    noisy: tuple[Noisy, ...] = field(default=())
+
+    @property
+    def here(self) -> Remainder:
+        """What all terms leave."""
+        return self.session.model.beside(self.terms)
+
+    def without(self, term: Term) -> Remainder:
+        """What the others leave."""
+        return self.session.model.beside(tuple(t for t in self.terms if t is not term))
+
+    def gained(self, term: Term) -> float:
+        """ln B of a term beside the others."""
+        return self.here.log_posterior - self.without(term).log_posterior - term.log_prior
+
+    def rivals(self, term: Term) -> list[PlaceCandidate]:
+        """The candidates that may stand in for a term, itself among them: they lose where it is there."""
+        kinds = self.session.model.kinds
+        with_it = {c.place: c.value for c in self.here.candidates(kinds)}
+        every = self.without(term).candidates(kinds)
+        return [c for c in every if c.place == term.place or c.value - with_it.get(c.place, -np.inf) > LOSES]
+
+    def course(self, term: Term) -> float:
+        """Probability that an unknown course, or another change that has no name, acts in place of a term."""
+        near = self.rivals(term)
+        unknown = [c.value for c in near if not c.named and c.place != term.place]
+        return float(np.exp(logsumexp(unknown) - logsumexp([c.value for c in near] + [0.0]))) if unknown else 0.0
+
+
+def solve(
+    baseline: Baseline, residuals_of: ResidualsOf, catalogue: Sequence[Signature]
+) -> tuple[TermSolution, TermSolution]:
+    """The likeliest solution of a session, and that in normal noise as it is stated.
+
+    ``residuals_of``: the residuals of the session, with its change since the history, in the noise of a baseline.
+    """
+    start = residuals_of(baseline)
+    solved = partial(solved_in, start, residuals_of, catalogue)
+    stated = best = solved(of_quiet_sensors(baseline))
+    factor = off_by_a_factor(baseline, best.terms, [n.sensor for n in best.noisy])
+    for noise in (factor, with_tails(best.session.residuals.baseline, best.terms)):
+        if noise is not None:
+            best = max(best, solved(noise.baseline, noise), key=lambda solution: solution.log_evidence)
+    return best, stated
+
+
+def solved_in(
+    start: WhitenedResiduals,
+    residuals_of: ResidualsOf,
+    catalogue: Sequence[Signature],
+    baseline: Baseline,
+    noise: OtherNoise | None = None,
+) -> TermSolution:
+    """The likeliest terms in the noise of a baseline; where it is not stated, and of sensors noisier than stated, in
+    the noise that they leave."""
+    noisy: dict[int, Noisy] = {}
+    for _ in range(SEARCHES):
+        session = SessionTerms.of(residuals_of(baseline), catalogue)
+        solution = TermSolution(session, search(session.model), 0.0)
+        noisy |= {n.sensor: n for n in noisy_in(solution)}
+        quieter = of_noisy_sensors(baseline, solution.terms)
+        if quieter is None and noise is None and baseline.unstated.any():
+            quieter = beside(baseline, columns_of(baseline, solution.terms))
+        if quieter is None or is_alike(quieter, baseline):
+            break
+        baseline = quieter
+    terms = at_their_best(session, solution.terms)
+    value = session.model.beside(terms).log_posterior + sum(n.log_prior for n in noisy.values())
+    value += session.model.start.log_scale_free + (0.0 if noise is None else noise.log_prior)
+    if session.residuals.baseline is not start.baseline:
+        value += log_likelihood_ratio(session.residuals, start)
+    return TermSolution(session, terms, value, noise, tuple(noisy.values()))
+
+
+def is_alike(noise: Baseline, other: Baseline) -> bool:
+    """Whether two noises of a session are the same for any purpose."""
+    change = np.abs(np.log(np.median(noise.variance / other.variance, axis=0)))
+    return bool(change.max() < SETTLED and np.array_equal(noise.unstated, other.unstated))
+
+
+def noisy_in(solution: TermSolution) -> list[Noisy]:
+    """The sensors that are found noisier than stated."""
+    unstated = solution.session.residuals.baseline.unstated
+    terms = [t for t in solution.terms if t.name == NOISE and not unstated[t.sensors[0]]]
+    return [
+        Noisy(
+            t.sensors[0],
+            1 + float(t.variance[0]),
+            solution.gained(t),
+            t.log_prior,
+            solution.course(t),
+            float(len(t.variance)),
+        )
+        for t in terms
+    ]
+
+
+def at_their_best(session: SessionTerms, terms: tuple[Term, ...]) -> tuple[Term, ...]:
+    """The terms with their shapes between the points of the grid."""
+    for _ in range(ROUNDS):
+        for k, term in enumerate(terms):
+            if term.named:
+                rest = session.model.beside(terms[:k] + terms[k + 1 :])
+                terms = (*terms[:k], refined(session.single, rest.info, term), *terms[k + 1 :])
+    return terms
