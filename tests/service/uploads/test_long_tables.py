@@ -16,6 +16,7 @@ from service.ingest.jobs import look_at, session
 from service.ingest.layout.facts import Rows, completed, facts_seen
 from service.ingest.layout.sampling import HEAD
 from service.ingest.layout.understand import SeenColumn, with_kinds
+from service.jobs import changes
 from service.kit import limits
 from service.settings import Settings
 from tests.databases import one_engine
@@ -131,6 +132,21 @@ def test_it_is_confirmed_on_the_page_and_read_by_a_job(settings: Settings) -> No
         address = f"/api/v1/sessions/{job['session']}"
         assert client.get(address).json()["unit"] == "LOG-1"
         assert LOGS["seconds"] in client.get(f"{address}/file").content
+
+
+@one_engine
+def test_it_stays_where_the_queue_is_full_so_that_it_can_be_confirmed_again(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with limited_client(settings, cells=300_000, later=1_000_000) as client:
+        with monkeypatch.context() as full:
+            full.setattr(changes, "MOST_OPEN", 0)
+            busy = confirmed(client, LOGS["seconds"])
+        assert busy.status_code == 503
+        assert "0 jobs wait already" in busy.text
+        assert 'value="store"' in busy.text
+        assert "Something is still missing" not in busy.text
+        assert sent(client, shown(busy.text), do="store").headers["location"] == "/jobs/1"
 
 
 def confirmed(client: httpx.Client, content: bytes) -> httpx.Response:
