@@ -7,6 +7,7 @@ from pathlib import Path
 
 import httpx
 import numpy as np
+import polars as pl
 import pytest
 
 from estimator.errors import FormatError
@@ -62,7 +63,8 @@ def mapping_of(path: Path) -> Json:
     """The mapping that is proposed, with the facts that no log states."""
     found = look_at(path, "log.csv")
     assert isinstance(found, dict)
-    assert (found["sampled"], found["rows"]) == (True, pytest.approx(len(HANDS.time), abs=3))
+    is_text = path.suffix != ".parquet"
+    assert (found["sampled"], found["rows"]) == (is_text, pytest.approx(len(HANDS.time), abs=3))
     seen = [SeenColumn(**column) for column in found["columns"]]
     guesses = with_kinds(seen, ())
     columns = [guess.column for guess in guesses]
@@ -120,6 +122,25 @@ def test_what_contradicts_its_beginning_is_named_by_column_and_line(averaged) ->
     (problem,) = refused.value.problems
     assert (problem.field, problem.row) == ("GZ", 44_999)
     assert str(problem.message).endswith("(column 'Gyro_Z_(rad/s)', line 45000 of the file)")
+
+
+def test_what_many_rows_contradict_is_counted_by_rows_of_the_whole(averaged) -> None:
+    with pytest.raises(FormatError) as refused:
+        averaged(log(change=lambda cells: cells.__setitem__(slice(44_990, 44_999), ["broken"] * 9)), 300_000)
+    *named, more = refused.value.problems
+    assert [problem.row for problem in named] == [44_991, 44_992, 44_993, 44_994, 44_995]
+    assert "4 more rows have this fault, up to row 44999; no later row was checked" in more.message
+
+
+@pytest.mark.parametrize("suffix", ["csv", "parquet"])
+def test_what_only_begins_like_a_session_file_is_read_by_its_mapping(suffix: str, tmp_path: Path) -> None:
+    path = tmp_path / f"log.{suffix}"
+    path.write_bytes(b"# a logger\n" + LOGS["seconds"])
+    if suffix == "parquet":
+        pl.read_csv(LOGS["seconds"]).write_parquet(path)
+    found = session(path, path.name, mapping_of(path))
+    assert isinstance(found, CalibrationSession)
+    assert len(found.readings) > 50
 
 
 @one_engine
