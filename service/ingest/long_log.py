@@ -226,7 +226,7 @@ def averaged_if_long(path: Path, filename: str, mapping: Json | None = None) -> 
     rows = mapped_rows(path, filename, mapping) if is_mapped else rows_of(path, filename)
     if rows is None:
         return None
-    limits, columns = in_force(), len(rows.names)
+    limits, columns = in_force(), len(rows.grid.headings if isinstance(rows, TextRows) else rows.names)
     document = with_metadata(rows.metadata, {}, filename)
     if document.get("sample_rate_hz") is None or document.get("programme") not in CALIBRATIONS:
         return None

@@ -17,6 +17,7 @@ from service.ingest.jobs import look_at, session
 from service.ingest.layout.facts import Rows, completed, facts_seen
 from service.ingest.layout.sampling import HEAD
 from service.ingest.layout.understand import SeenColumn, with_kinds
+from service.ingest.long_log import averaged_if_long
 from service.jobs import changes
 from service.kit import limits
 from service.settings import Settings
@@ -130,6 +131,19 @@ def test_what_many_rows_contradict_is_counted_by_rows_of_the_whole(averaged) -> 
     *named, more = refused.value.problems
     assert [problem.row for problem in named] == [44_991, 44_992, 44_993, 44_994, 44_995]
     assert "4 more rows have this fault, up to row 44999; no later row was checked" in more.message
+
+
+def test_columns_that_are_left_out_count_too(tmp_path: Path) -> None:
+    lines = LOGS["seconds"].split(b"\n")
+    wide = [lines[0] + b",a,b,c", *(line + b",0,0,0" for line in lines[1:])]
+    path = tmp_path / "log.csv"
+    path.write_bytes(b"\n".join(wide))
+    usual = limits.in_force()
+    limits.use(replace(usual, cells=8 * len(lines)))
+    found = averaged_if_long(path, path.name, mapping_of(path))
+    limits.use(usual)
+    assert found is not None
+    assert len(found.readings) > 50
 
 
 @pytest.mark.parametrize("suffix", ["csv", "parquet"])
