@@ -1,5 +1,6 @@
 """A raw log with more cells than the limit, as CSV or Parquet: averaged while it is scanned."""
 
+from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
@@ -221,23 +222,34 @@ LABEL, SETTINGS = "position", ("beta_deg", "run")
 
 
 def averaged_if_long(path: Path, filename: str, mapping: Json | None = None) -> CalibrationSession | None:
-    """The averaged positions of a long raw log in a file; None for any other file, which is read whole."""
+    """The averaged positions of a long raw log in a file; all rows of a long text under a mapping that is short enough
+    to be averaged in one piece; None for any other file."""
     is_mapped = mapping is not None or is_wrapped(path)
     rows = mapped_rows(path, filename, mapping) if is_mapped else rows_of(path, filename)
     if rows is None:
         return None
-    limits, columns = in_force(), len(rows.grid.headings if isinstance(rows, TextRows) else rows.names)
+    limits, columns = in_force(), len(rows.names)
     document = with_metadata(rows.metadata, {}, filename)
     if document.get("sample_rate_hz") is None or document.get("programme") not in CALIBRATIONS:
         return None
     if rows.count(limits.cells // columns) * columns <= limits.cells:
-        return None
+        return _whole(rows, document, filename) if isinstance(rows, TextRows) else None
     check_table(filename, 1, columns)
     try:
         return _averaged(_Scan(rows, document, filename))
     except SessionError as fault:
         kind = ScheduleError if isinstance(fault, ScheduleError) else FormatError
         raise kind(fault.problems, filename) from fault
+
+
+def _whole(rows: TextRows, document: Mapping[str, object], filename: str) -> CalibrationSession:
+    """A log that is averaged in one piece, cut some rows at a time, which takes less memory."""
+    rows = replace(rows, places=deque())
+    frame = pl.concat(rows.stretches(rows.names), how="vertical_relaxed")
+    table = columns_of(frame, filename)
+    for name in (name for name in frame.columns if frame[name].dtype == pl.String):
+        table[name] = [cell_of(text or "") for text in frame[name]]
+    return read_session({**document, "table": table}, name=filename, most=in_force().extent, where=rows.where)
 
 
 @dataclass

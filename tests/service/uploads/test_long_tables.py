@@ -13,6 +13,7 @@ import pytest
 from estimator.errors import FormatError
 from estimator.json_object import Json
 from estimator.session import CalibrationSession
+from service.ingest import read_upload
 from service.ingest.jobs import look_at, session
 from service.ingest.layout.facts import Rows, completed, facts_seen
 from service.ingest.layout.sampling import HEAD
@@ -133,17 +134,17 @@ def test_what_many_rows_contradict_is_counted_by_rows_of_the_whole(averaged) -> 
     assert "4 more rows have this fault, up to row 44999; no later row was checked" in more.message
 
 
-def test_columns_that_are_left_out_count_too(tmp_path: Path) -> None:
-    lines = LOGS["seconds"].split(b"\n")
-    wide = [lines[0] + b",a,b,c", *(line + b",0,0,0" for line in lines[1:])]
+def test_a_log_that_is_averaged_in_one_piece_is_cut_in_parts_too(tmp_path: Path) -> None:
     path = tmp_path / "log.csv"
-    path.write_bytes(b"\n".join(wide))
-    usual = limits.in_force()
-    limits.use(replace(usual, cells=8 * len(lines)))
-    found = averaged_if_long(path, path.name, mapping_of(path))
-    limits.use(usual)
+    path.write_bytes(LOGS["marked gaps"])
+    mapping = mapping_of(path)
+    found, short = (
+        averaged_if_long(path, path.name, mapping),
+        read_upload(path.read_bytes(), path.name, mapping),
+    )
     assert found is not None
-    assert len(found.readings) > 50
+    np.testing.assert_allclose(found.readings, short.readings, rtol=1e-9, atol=1e-9)
+    assert found.screening == short.screening
 
 
 @pytest.mark.parametrize("suffix", ["csv", "parquet"])
