@@ -76,6 +76,15 @@ def too_many(count: int) -> str:
     )
 
 
+def too_many_rests(count: int) -> str:
+    """The fault of a log that stands still too often, as a message."""
+    return say(
+        "the block is still {count} times; a log of {most_rests} positions can be averaged, so split it",
+        count=count,
+        most_rests=MOST_RESTS,
+    )
+
+
 Mask = NDArray[np.bool_]
 
 
@@ -166,13 +175,16 @@ def _jitters(log: LongLog, choices: Sequence[Intervals]) -> list[Array]:
 def _chosen(log: LongLog, residual: Callable[[CalibrationSession], float]) -> RowTally:
     """Sums over the rests under the threshold that calibrates best, as `estimator.static.best`."""
     seen = _quietness(log)
+    choices = [still(seen.quiet, threshold, seen.rate) for threshold in THRESHOLDS]
     tried: dict[tuple[int, ...], tuple[float, RowTally]] = {}
-    for tally in _calm(log, [still(seen.quiet, threshold, seen.rate) for threshold in THRESHOLDS]):
+    for tally in _calm(log, choices):
         key = (*tally.rests.start.tolist(), *tally.rests.stop.tolist())
         if key not in tried:
             tried[key] = (residual(tally.session()), tally)
     if not tried:
-        raise ScheduleError([Problem("table", no_rests_message(seen.samples))])
+        count = sorted(map(len, choices))[len(choices) // 2]
+        fault = no_rests_message(seen.samples) if count <= MOST_RESTS else too_many_rests(count)
+        raise ScheduleError([Problem("table", fault)])
     return min(tried.values(), key=lambda pair: pair[0])[1]
 
 

@@ -27,8 +27,6 @@ from estimator.session import ACCELEROMETER, Array, CalibrationSession, Sensor, 
 FALSE_ALARM = 0.01
 """One unchanged block in a hundred may be called changed, as in a session (`health.rule`)."""
 
-NORMAL_QUARTILE = 0.6745
-"""Sigma, which half of what is normal stays within."""
 COMMON = 12
 """Dimensions that no recording shows: three of a common bias, nine of a linear map of the applied vector."""
 

@@ -36,13 +36,20 @@ class Problems:
     A reader that records a fault returns a stand-in value and goes on; no session is built while there are faults.
     """
 
-    def __init__(self, source: str | None, most: Extent | None = None, where: Where | None = None) -> None:
+    def __init__(
+        self,
+        source: str | None,
+        most: Extent | None = None,
+        where: Where | None = None,
+        rows_before: int | None = None,
+    ) -> None:
         self.source = None if source is None else printable(source)
         self.most = most or Extent()
         """Limits on the size of the file; more is a fault."""
         self.lines_before_table: int | None = None
         """Set for CSV: row r of the table is line r + this of the file."""
         self._where = where
+        self._rows_before = rows_before
         self._found: list[Problem] = []
         self._unsaid = 0
         self._only_schedule = True
@@ -61,21 +68,21 @@ class Problems:
     ) -> None:
         """Record the same kind of fault in several rows of ``count``; they count from 0 here, as for the message."""
         faulty = list(rows)
-        if count is not None and len(faulty) == count > ROWS_SHOWN:
+        if count is not None and self._rows_before is None and len(faulty) == count > ROWS_SHOWN:
             self.add(field, say("all {of} rows have this fault; the first {message}", of=count, message=message(0)))
             return
         for index in faulty[:ROWS_SHOWN]:
             self.add(field, message(index), index + 1)
         if more := len(faulty[ROWS_SHOWN:]):
-            self.add(
-                field,
-                say_count(
-                    "{n} more row has this fault, up to row {faulty}",
-                    "{n} more rows have this fault, up to row {faulty}",
-                    more,
-                    faulty=faulty[-1] + 1,
-                ),
+            last = faulty[-1] + 1 + (self._rows_before or 0)
+            said = say_count(
+                "{n} more row has this fault, up to row {faulty}",
+                "{n} more rows have this fault, up to row {faulty}",
+                more,
+                faulty=last,
             )
+            checked = say("{fault}; no later row was checked", fault=said)
+            self.add(field, said if self._rows_before is None else checked)
 
     def fail(self, field: str, message: str, /, **parts: object) -> FormatError:
         """The error to raise when nothing more can be read; holds what was found before, too."""
@@ -91,6 +98,7 @@ class Problems:
         if len(self._found) >= PROBLEMS_SHOWN:
             self._unsaid += 1
             return
+        row = row and row + (self._rows_before or 0)
         if row is not None and self.lines_before_table is not None:
             message = say("{message} (line {row} of the file)", message=message, row=row + self.lines_before_table)
         if self._where is not None and (place := self._where(field, row)):

@@ -23,6 +23,7 @@ def read_session(
     name: str | None = None,
     most: Extent | None = None,
     part: bool = False,
+    rows_before: int | None = None,
     where: Where | None = None,
     screen: Screen | None = None,
 ) -> CalibrationSession:
@@ -34,6 +35,7 @@ def read_session(
     name : what messages call the source; the path unless given.
     most : how much it may hold; `Extent()` unless given.
     part : whether these are some rows of a longer log, which need not support the programme by themselves.
+    rows_before : rows of that log before these, as messages count; None of a log that is read whole.
     where : says where a field and row stand in the file that a dict was read from; messages name it.
     screen : what was found in the parts before; a part without it is taken as it stands.
 
@@ -46,7 +48,7 @@ def read_session(
     FormatError : the source cannot be read, or fields of it are wrong; ``problems`` holds every one with its row.
     ScheduleError : every field is right, but the rows cannot support the programme.
     """
-    problems = Problems(name or display_name(source), most, where)
+    problems = Problems(name or display_name(source), most, where, rows_before)
     return _assemble(Fields(load(source, problems), "", problems), part=part, screen=screen)
 
 

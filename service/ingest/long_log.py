@@ -1,5 +1,6 @@
 """A raw log with more cells than the limit, as CSV or Parquet: averaged while it is scanned."""
 
+from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
@@ -11,7 +12,7 @@ import numpy as np
 import polars as pl
 
 from estimator.calibration.free import residual_per_freedom, tilt_response
-from estimator.errors import FormatError, Problem, ScheduleError, SessionError
+from estimator.errors import FormatError, ScheduleError, SessionError
 from estimator.json_object import Json
 from estimator.long_logs import LongLog, average_long
 from estimator.reading import Extent, read_session
@@ -77,11 +78,11 @@ def rows_of(path: Path, filename: str) -> TableScan | None:
 
 
 def mapped_rows(path: Path, filename: str, mapping: Json | None) -> TextRows | None:
-    """The rows of a long text under its mapping, be that in the file or beside it; None for any other file."""
+    """The rows of a long text under its mapping, be that in the file or beside it; None for any other table."""
     table = StoredTable(path, 0, path.stat().st_size)
-    if is_wrapped(path):
+    if mapping is None:
         mapping, table = table_in(path, filename)
-    return None if mapping is None else long_text(table, filename, layout_of(mapping, filename))
+    return long_text(table, filename, layout_of(mapping, filename))
 
 
 @dataclass(frozen=True)
@@ -221,8 +222,10 @@ LABEL, SETTINGS = "position", ("beta_deg", "run")
 
 
 def averaged_if_long(path: Path, filename: str, mapping: Json | None = None) -> CalibrationSession | None:
-    """The averaged positions of a long raw log in a file; None for any other file, which is read whole."""
-    rows = mapped_rows(path, filename, mapping) or rows_of(path, filename)
+    """The averaged positions of a long raw log in a file; all rows of a long text under a mapping that is short enough
+    to be averaged in one piece; None for any other file."""
+    is_mapped = mapping is not None or is_wrapped(path)
+    rows = mapped_rows(path, filename, mapping) if is_mapped else rows_of(path, filename)
     if rows is None:
         return None
     limits, columns = in_force(), len(rows.names)
@@ -230,13 +233,23 @@ def averaged_if_long(path: Path, filename: str, mapping: Json | None = None) -> 
     if document.get("sample_rate_hz") is None or document.get("programme") not in CALIBRATIONS:
         return None
     if rows.count(limits.cells // columns) * columns <= limits.cells:
-        return None
+        return _whole(rows, document, filename) if isinstance(rows, TextRows) else None
     check_table(filename, 1, columns)
     try:
         return _averaged(_Scan(rows, document, filename))
     except SessionError as fault:
         kind = ScheduleError if isinstance(fault, ScheduleError) else FormatError
         raise kind(fault.problems, filename) from fault
+
+
+def _whole(rows: TextRows, document: Mapping[str, object], filename: str) -> CalibrationSession:
+    """A log that is averaged in one piece, cut some rows at a time, which takes less memory."""
+    rows = replace(rows, places=deque())
+    frame = pl.concat(rows.stretches(rows.names), how="vertical_relaxed")
+    table = columns_of(frame, filename)
+    for name in (name for name in frame.columns if frame[name].dtype == pl.String):
+        table[name] = [cell_of(text or "") for text in frame[name]]
+    return read_session({**document, "table": table}, name=filename, most=in_force().extent, where=rows.where)
 
 
 @dataclass
@@ -354,14 +367,15 @@ class _Scan:
     def _checked(self, table: Mapping[str, object], offset: int, screen: Screen | None) -> CalibrationSession:
         """The rows from ``offset`` on; every problem names its row of the whole log."""
         whole = {**self.document, "table": table}
-        try:
-            return read_session(
-                whole, name=self.filename, most=Extent(), part=True, screen=screen,
-                where=lambda field, row: self.rows.where(field, row and row + offset),
-            )  # fmt: skip
-        except FormatError as fault:
-            problems = [Problem(p.field, p.message, p.row and p.row + offset) for p in fault.problems]
-            raise FormatError(problems, self.filename) from fault
+        return read_session(
+            whole,
+            name=self.filename,
+            most=Extent(),
+            part=True,
+            rows_before=offset,
+            screen=screen,
+            where=self.rows.where,
+        )
 
 
 def ahead(frames: Iterator[pl.DataFrame]) -> Iterator[pl.DataFrame]:

@@ -151,7 +151,8 @@ ALL_PASS = "Every parameter is within its tolerance by more than U; closest to i
 def by_defaults(unit_type: str) -> str:
     """The sentence that the tolerances of a type are nobody's."""
     return say(
-        "Nobody has entered tolerances for {unit_type}: the defaults are used, or 3 U where U exceeds them.",
+        "Nobody has entered tolerances for {unit_type}: the defaults are used, or 3 U where U of the "
+        "reference exceeds them.",
         unit_type=unit_type,
     )
 

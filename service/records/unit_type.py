@@ -75,14 +75,11 @@ def _like(was: UnitType, name: str) -> UnitType:
 
 def _require_possible(store: Store, serial: str, was: UnitType, new: UnitType) -> None:
     fault = fault_of_name(new.name)
-    ours, theirs = UnitTypes(store).kinds_of_unit(serial), _kinds(store, new)
-    if not fault and ours and theirs and Counter(ours.values()) != theirs:
-        parts = {
-            "type": new.name,
-            "theirs": _in_words(theirs),
-            "serial": serial,
-            "ours": _in_words(Counter(ours.values())),
-        }
+    kinds, own = UnitTypes(store).kinds(new.name), UnitTypes(store).kinds_of_unit(serial)
+    theirs = Counter(kinds.get(name, new.block) if kinds else "sensor" for name in new.sensors)
+    ours = Counter(own.values() if kinds else ["sensor"] * len(own))
+    if not fault and ours and theirs and ours != theirs:
+        parts = {"theirs": _in_words(theirs), "serial": serial, "ours": _in_words(ours)}
         fault = say("is of units with {theirs}; {serial} has {ours}: name a type with the same sensors", **parts)
     if fault:
         raise RefusedError("The unit cannot be moved to that type.", (problem_at("unit_type", fault),))
@@ -92,12 +89,6 @@ def _require_possible(store: Store, serial: str, was: UnitType, new: UnitType) -
             serial=serial,
             type=was.name,
         )
-
-
-def _kinds(store: Store, known: UnitType) -> Mapping[str, int]:
-    """The number of a type's sensors of each kind."""
-    kinds = UnitTypes(store).kinds(known.name)
-    return Counter(kinds.get(name, known.block) for name in known.sensors)
 
 
 def _in_words(kinds: Mapping[str, int]) -> str:

@@ -1,5 +1,6 @@
 """Long files that were received completely and wait to be read, next to the uploads, each under a name of its own."""
 
+import os
 from collections.abc import Sequence
 from contextlib import suppress
 from datetime import datetime, timedelta
@@ -30,6 +31,15 @@ def put_waiting(files: Files, place: str, content: Content) -> None:
             with written_whole(target) as file:
                 file.write(content)
         sync_folder(target.parent)
+
+
+def give_back(files: Files, place: str, content: Content) -> None:
+    """Puts a file that is not to wait back where it was, or removes what was in memory."""
+    if isinstance(content, Landed):
+        with disk_faults():
+            os.replace(_path(files, place), content.path)
+    else:
+        drop_waiting(files, place)
 
 
 def waiting_file(files: Files, place: str, digest: str, size: int) -> Landed:

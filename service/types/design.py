@@ -32,10 +32,12 @@ def of_its_design(store: Store, new: Checked) -> Checked:
 
 
 def _names(new: Checked) -> Iterator[str]:
-    """The description, then with its nominal scale, then numbered."""
-    plain, scales = new.type_name, [sensor.nominal_scale for sensor in new.session.sensors]
+    """The description, then with the nominal scale of each kind, then numbered."""
+    plain, scales = new.type_name, dict[str, list[float]]()
     yield plain
-    scaled = f"{plain}, {np.median(np.abs(scales)):.4g}"
+    for sensor in new.session.sensors:
+        scales.setdefault(sensor.kind, []).append(abs(sensor.nominal_scale))
+    scaled = ", ".join([plain, *(f"{np.median(of_kind):.4g}" for of_kind in scales.values())])
     yield scaled[:LONGEST_NAME]
     for number in count(2):
         yield f"{scaled[: LONGEST_NAME - 8]} ({number})"

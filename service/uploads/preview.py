@@ -19,6 +19,7 @@ from service.ingest.layout.facts import (
     completed,
     facts_seen,
     following_the_rate,
+    is_contradicted,
     questions,
     started_at,
     with_unit_of_time,
@@ -119,16 +120,21 @@ def _seen(look: Mapping[str, Any]) -> list[SeenColumn]:
 
 
 def _proposed(storage: Storage, look: Mapping[str, Any], unit: str, unit_type: str, filename: str) -> tuple[Json, bool]:
-    """The mapping of the last file with this layout, or of the last session of the unit or its type."""
+    """The mapping of the last file with this layout, unless the values contradict it, or of the last session of the
+    unit or its type."""
+    seen = _seen(look)
     with storage.database.reading() as store:
         if unit and not unit_type and Units(store).exists(unit):
             unit_type = UnitTypes(store).of_unit(unit).name
         found = Layouts(store).find(fingerprint(look), unit_type)
-    if found is not None:
-        facts = found["session"] if not unit else facts_of(storage, unit, unit_type) or found["session"]
-        return {**found, "session": _with_unit(_titled({**facts, **_log_facts(look)}, look), unit)}, True
     facts = facts_of(storage, unit, unit_type)
-    seen = _seen(look)
+    if found is not None:
+        rows, own = Rows(found["columns"], seen, look["rows"]), facts if unit else {}
+        known = dict(own or found["session"])
+        if known.get("sample_rate_hz") and (clock := rows.rate()) is not None:
+            known["sample_rate_hz"] = clock
+        if own or not is_contradicted(known, rows):
+            return {**found, "session": _with_unit(_titled({**known, **_log_facts(look)}, look), unit)}, True
     guesses = with_kinds(seen, facts.get("sensors", ()), filename.rpartition(".")[0])
     rate = look["titles"].get("sample_rate_hz")
     columns = with_unit_of_time([guess.column for guess in guesses], seen, look["rows"], rate)

@@ -32,7 +32,7 @@ from service.storage import Storage
 from service.storage.audit import Audit
 from service.storage.files import content_hash
 from service.storage.queries import Store
-from service.storage.waiting import drop_orphaned, drop_waiting, put_waiting, waiting_file
+from service.storage.waiting import drop_orphaned, drop_waiting, give_back, put_waiting, waiting_file
 from service.uploads.receive import receive, receive_mapped, refuse
 
 FINAL = (NotFoundError, ConflictError, ForbiddenError, DamagedError)
@@ -67,7 +67,7 @@ def ask_upload(storage: Storage, file: SentFile, person: Person, place: str, now
             existing = next((job for job in Jobs(store).sending(digest) if _is_same(job, new)), None)
             job = _added(store, new, now) if existing is None else existing
     except BusyError:
-        drop_waiting(storage.files, place)
+        give_back(storage.files, place, file.content)
         raise
     if existing is not None:
         drop_waiting(storage.files, place)

@@ -104,6 +104,13 @@ def test_a_log_that_never_rests_is_refused_in_parts_too():
         average_long(in_parts(log, 999), residual_per_freedom, tilt_response)
 
 
+def test_a_log_that_rests_too_often_is_said_to(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("estimator.long_logs.average.MOST_RESTS", 5)
+    readings, _ = tumble(poses=8, rest=4.0, turn=2.0)
+    with pytest.raises(ScheduleError, match=r"is still 8 times; a log of 5 positions can be averaged, so split it"):
+        average_long(in_parts(raw(readings), 999), residual_per_freedom, tilt_response)
+
+
 def test_a_single_position_is_refused_in_parts_too():
     log = raw(np.full((500, 3), 1.0), position=np.zeros(500, int))
     with pytest.raises(ScheduleError, match="a single position"):

@@ -28,6 +28,9 @@ USUAL = {
 }
 """Prior share of the orders, in proportion: what wanders, wanders in time. Those that a session lacks have none."""
 
+TOGETHER = {"the order measured": "β and the order measured", "temperature": "β and temperature"}
+"""Orders along which a course may run together with β."""
+
 ROUND = (0.4, 1.0)
 """Length, rad, over which a course around β keeps its value: some six harmonics, or two."""
 
@@ -75,9 +78,9 @@ def kernels(setting: Setting, sensor: int) -> Iterator[tuple[str, Array]]:
     same_run = setting.flipped[:, None] == setting.flipped
     if not same_run.all():
         yield from (("β, each run separately", kernel * same_run) for kernel in turning)
-    for name in ("the order measured", "temperature"):
+    for name, both in TOGETHER.items():
         if name in places:
-            yield from ((f"β and {name}", bending(places[name], LENGTHS[-1]) * kernel) for kernel in turning)
+            yield from ((both, bending(places[name], LENGTHS[-1]) * kernel) for kernel in turning)
 
 
 def along(place: Array) -> Iterator[Array]:

@@ -18,7 +18,7 @@ CLOSEST = 3
 HOPELESS = -10.0
 """ln posterior odds, as if sensors did not overlap, below which a shape is not weighed exactly."""
 
-PREFIX = "shared:"
+PREFIX = "several-"
 """It tells the name of a cause of several sensors from that of one."""
 
 

@@ -3,7 +3,7 @@
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from enum import Enum
+from enum import Enum, auto
 from functools import partial
 from typing import ClassVar
 
@@ -23,9 +23,12 @@ COURSE, NOISE, MOVED = "unexplained", "excess-noise", "own-change"
 class Since(Enum):
     """Since when an effect acts."""
 
-    BEFORE = "before the history"
-    NOW = "this session"
-    OPEN = "left open, with what the sensor's parameters changed since the history"
+    BEFORE = auto()
+    """Since before the history."""
+    NOW = auto()
+    """In this session alone."""
+    OPEN = auto()
+    """Left open, with what the sensor's parameters changed since the history."""
 
 
 @dataclass(frozen=True, eq=False)

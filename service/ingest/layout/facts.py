@@ -17,11 +17,13 @@ from service.ingest.layout.evidence import (
     GRAVITIES,
     RATE_UNITS,
     TIME_UNITS,
+    UNIT_TOLERANCE,
     Array,
     TurnFactors,
     clock_unit,
     follows_itself,
     gravity_at_rest,
+    is_like_gravity,
     sample_rate,
     turns_of,
 )
@@ -279,6 +281,41 @@ def _contradicted(session: Mapping[str, Any], sensors: Sequence[Mapping[str, Any
         if found and sensor in by_kind[GYROSCOPE] and stated != found and stated in RATE_UNITS:
             text = say("is {unit}, but by the turns between rests it is {found}", unit=stated, found=found)
             yield Problem(f"sensors[{number}].reading_unit", text)
+
+
+def is_contradicted(session: Mapping[str, Any], table: Rows) -> bool:
+    """Whether gravity at rest or the turns of a log contradict units, scale factors or signs of three accelerometers
+    and gyros along x, y and z that an earlier file had."""
+    by_kind, rate = _by_kind(_sensors_of(session), session), session.get("sample_rate_hz")
+    felt, turned = map(table.triad, by_kind.values())
+    usual = {kind: _along_axes(of_kind, table) for kind, of_kind in by_kind.items()}
+    length, of_gravity = None if felt is None else gravity_at_rest(felt), usual[ACCELEROMETER]
+    if session.get("programme") != ORIENTATIONS or felt is None or length is None:
+        return False
+    if of_gravity is None or (of_gravity <= 0).any():
+        return False
+    if not is_like_gravity(length, float(np.median(of_gravity)) * GRAVITIES["m/s²"]):
+        return True
+    turns, of_turns = None if turned is None else turns_of(felt, turned), usual[GYROSCOPE]
+    if turns is None or of_turns is None or not isinstance(rate, int | float):
+        return False
+    return bool(np.any(np.abs(turns.factors * rate * of_turns - 1) > UNIT_TOLERANCE))
+
+
+def _along_axes(sensors: Sequence[Mapping[str, Any]], table: Rows) -> Array | None:
+    """(3,) readings per m/s² or rad/s along x, y and z as the columns have them; None of other axes or no scale."""
+    named = {str(sensor.get("name")): sensor for sensor in sensors}
+    factors = []
+    for place, name in enumerate(in_order(sensors)):
+        axis, scale = named[name].get("nominal_axis"), named[name].get("nominal_scale")
+        read_in = str(table.columns.get(name, {}).get("unit") or "")
+        converted = conversion(read_in, str(named[name].get("reading_unit") or read_in))
+        if not isinstance(axis, list | tuple) or [abs(part) for part in axis] != [k == place for k in range(AXES)]:
+            return None
+        if not isinstance(scale, int | float) or converted is None:
+            return None
+        factors.append(scale * axis[place] * converted[1] / converted[0])
+    return np.array(factors)
 
 
 def following_the_rate(session: Mapping[str, Any], table: Rows) -> Iterator[str]:

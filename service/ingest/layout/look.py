@@ -117,9 +117,11 @@ def _column(heading: str, cells: Any, grid: Grid) -> Json:
     cells = [cell for j, cell in enumerate(cells) if j not in grid.skipped]
     filled = [cell for cell in cells if not is_nothing(cell)]
     first_cells = cells[: min(following, MOST_VALUES, MOST_CELLS // len(grid.headings))]
-    values = [None if is_nothing(cell) else number_of(cell, decimal) for cell in first_cells]
+    values: list[Cell] = [None if is_nothing(cell) else number_of(cell, decimal) for cell in first_cells]
     numbers = sum(value is not None for value in values)
     holds_numbers = bool(filled) and numbers >= MOSTLY * sum(not is_nothing(cell) for cell in first_cells)
+    if not holds_numbers and any(not isinstance(time, str) for time in seconds_of(filled[:SHOWN])):
+        values = seconds_of(first_cells)
     words = list(dict.fromkeys(word_text(cell)[:LONGEST_CELL] for cell in filled[:10_000]))
     first = next((j for j, cell in enumerate(cells) if not is_nothing(cell)), len(cells))
     return {
@@ -130,7 +132,7 @@ def _column(heading: str, cells: Any, grid: Grid) -> Json:
         "words": words if len(words) <= MOST_WORDS else [],
         "holes": first == 0 and len(filled) < len(cells),
         "meaning": grid.meanings.get(heading),
-        "values": _numbers(values if holds_numbers else seconds_of(first_cells)),
+        "values": _numbers(values),
     }
 
 

@@ -55,7 +55,7 @@ class TextRows:
     lines: int
     mapped: Sequence[tuple[int, ColumnMapping]]
     """Columns of a session with their places."""
-    _places: deque[tuple[int, NDArray[np.int64]]] = field(default_factory=lambda: deque(maxlen=STRETCHES))
+    places: deque[tuple[int, NDArray[np.int64]]] = field(default_factory=lambda: deque(maxlen=STRETCHES))
     """Number of the first row, and lines of the rows, of the last stretches."""
 
     @property
@@ -81,19 +81,19 @@ class TextRows:
         column = next((column for _, column in self.mapped if column.meaning == field), None)
         if column is None or row is None:
             return ""
-        line = next((lines[row - 1 - at] for at, lines in self._places if 0 <= row - 1 - at < len(lines)), None)
+        line = next((lines[row - 1 - at] for at, lines in self.places if 0 <= row - 1 - at < len(lines)), None)
         said = say("column {heading}", heading=shown(column.heading))
         return said if line is None else say("{column}, line {line} of the file", column=said, line=line)
 
     def stretches(self, names: Sequence[str]) -> Iterator[pl.DataFrame]:
         """Some columns, some rows at a time."""
         before, rows, lines = Before(), 0, 0
-        self._places.clear()
+        self.places.clear()
         for text in self._texts():
             count, skipped = text.count("\n"), max(self._first - lines, 0)
             text = "\n".join(text.split("\n")[skipped:])
             frame, kept = self._plain(text, before) or self._cut(text, before)
-            self._places.append((rows, kept + (lines + skipped + 1)))
+            self.places.append((rows, kept + (lines + skipped + 1)))
             rows, lines = rows + len(frame), lines + count
             yield frame.select(names)
 

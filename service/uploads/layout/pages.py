@@ -7,7 +7,7 @@ from fastapi.responses import HTMLResponse, RedirectResponse
 
 from estimator.errors import Problem
 from estimator.json_object import Json
-from service.errors import RefusedError
+from service.errors import BusyError, RefusedError
 from service.ingest.layout.mapping import PER_FILE_FIELDS
 from service.kit.arriving_files import where
 from service.kit.limits import in_force
@@ -58,6 +58,9 @@ def show_layout(
         except RefusedError as fault:
             failed = replace(preview_shown, problems=fault.problems, session=None)
             return render(request, "layout.html", layout_page(carried_file, failed, form, types), fault.status)
+        except BusyError as fault:
+            page = replace(page, problems=(Problem("file", fault.detail),))
+            return render(request, "layout.html", page, fault.status)
         drop_aside(files, form.owner, carried_file.aside)
         return RedirectResponse(f"/sessions/{receipt.id}", SEE_OTHER)
     return render(request, "layout.html", page)

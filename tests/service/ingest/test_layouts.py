@@ -9,8 +9,9 @@ import xlsxwriter
 
 from estimator.errors import FormatError
 from estimator.reading import read_session
-from service.ingest import is_own_layout, look_at, read_upload
+from service.ingest import is_own_layout, jobs, look_at, read_upload
 from service.ingest.digest import content_digest
+from service.ingest.layout import times
 from service.ingest.layout.envelope import is_wrapped, unwrapped, wrapped
 from service.ingest.layout.understand import SeenColumn, understood
 from service.ingest.layout.vocabulary import conversion, plain_label
@@ -345,3 +346,12 @@ def test_a_hidden_sheet_is_not_the_one_that_is_read():
             hidden.write_row(j, 0, [j] * 20)
         hidden.hide()
     assert look_at(buffer.getvalue(), "own")["taken"]["sheet"] == "shown"
+
+
+def test_only_columns_that_begin_with_times_are_read_as_such(monkeypatch: pytest.MonkeyPatch) -> None:
+    read: list[str] = []
+    monkeypatch.setattr(times, "moment_of", lambda text: read.append(text))
+    rows = "".join(f"{k},{k / 7:.3f},,imu_link,2026-03-01T09:00:{k % 60:02}\n" for k in range(500))
+    jobs.look_at(b"n,ax,empty,frame,time\n" + rows.encode(), "log.csv")
+    assert {text[:4] for text in read} == {"imu_", "2026"}
+    assert len(read) < 50

@@ -6,6 +6,7 @@ from typing import Any
 import httpx
 import pytest
 
+from tests import builders
 from tests.conftest import Holding
 from tests.service.made_sessions import in_counts, session_bytes
 
@@ -129,6 +130,16 @@ def test_a_unit_does_not_move_to_a_type_of_other_sensors(holding: Holding) -> No
     assert problem["field"] == "unit_type"
     assert "4 accelerometers" in problem["message"]
     assert "6 accelerometers" in problem["message"]
+
+
+def test_a_block_with_gyros_moves_to_a_new_type_and_back(holding: Holding) -> None:
+    client = holding(json.dumps(builders.mixed_block()).encode())
+    (known,) = client.get("/api/v1/units").json()["units"]
+    for name in ("MEMS-9", known["unit_type"]):
+        answer = client.put(
+            f"/api/v1/units/{known['serial']}/type", json={"unit_type": name, "by": "K. Ito", "why": "the maker's name"}
+        )
+        assert (answer.status_code, answer.json().get("name")) == (200, name), answer.text
 
 
 def test_a_partial_first_session_decides_nothing(holding: Holding) -> None:

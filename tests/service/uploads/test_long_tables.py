@@ -7,15 +7,19 @@ from pathlib import Path
 
 import httpx
 import numpy as np
+import polars as pl
 import pytest
 
 from estimator.errors import FormatError
 from estimator.json_object import Json
 from estimator.session import CalibrationSession
+from service.ingest import read_upload
 from service.ingest.jobs import look_at, session
 from service.ingest.layout.facts import Rows, completed, facts_seen
 from service.ingest.layout.sampling import HEAD
 from service.ingest.layout.understand import SeenColumn, with_kinds
+from service.ingest.long_log import averaged_if_long
+from service.jobs import changes
 from service.kit import limits
 from service.settings import Settings
 from tests.databases import one_engine
@@ -61,7 +65,8 @@ def mapping_of(path: Path) -> Json:
     """The mapping that is proposed, with the facts that no log states."""
     found = look_at(path, "log.csv")
     assert isinstance(found, dict)
-    assert (found["sampled"], found["rows"]) == (True, pytest.approx(len(HANDS.time), abs=3))
+    is_text = path.suffix != ".parquet"
+    assert (found["sampled"], found["rows"]) == (is_text, pytest.approx(len(HANDS.time), abs=3))
     seen = [SeenColumn(**column) for column in found["columns"]]
     guesses = with_kinds(seen, ())
     columns = [guess.column for guess in guesses]
@@ -121,6 +126,38 @@ def test_what_contradicts_its_beginning_is_named_by_column_and_line(averaged) ->
     assert str(problem.message).endswith("(column 'Gyro_Z_(rad/s)', line 45000 of the file)")
 
 
+def test_what_many_rows_contradict_is_counted_by_rows_of_the_whole(averaged) -> None:
+    with pytest.raises(FormatError) as refused:
+        averaged(log(change=lambda cells: cells.__setitem__(slice(44_990, 44_999), ["broken"] * 9)), 300_000)
+    *named, more = refused.value.problems
+    assert [problem.row for problem in named] == [44_991, 44_992, 44_993, 44_994, 44_995]
+    assert "4 more rows have this fault, up to row 44999; no later row was checked" in more.message
+
+
+def test_a_log_that_is_averaged_in_one_piece_is_cut_in_parts_too(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_bytes(LOGS["marked gaps"])
+    mapping = mapping_of(path)
+    found, short = (
+        averaged_if_long(path, path.name, mapping),
+        read_upload(path.read_bytes(), path.name, mapping),
+    )
+    assert found is not None
+    np.testing.assert_allclose(found.readings, short.readings, rtol=1e-9, atol=1e-9)
+    assert found.screening == short.screening
+
+
+@pytest.mark.parametrize("suffix", ["csv", "parquet"])
+def test_what_only_begins_like_a_session_file_is_read_by_its_mapping(suffix: str, tmp_path: Path) -> None:
+    path = tmp_path / f"log.{suffix}"
+    path.write_bytes(b"# a logger\n" + LOGS["seconds"])
+    if suffix == "parquet":
+        pl.read_csv(LOGS["seconds"]).write_parquet(path)
+    found = session(path, path.name, mapping_of(path))
+    assert isinstance(found, CalibrationSession)
+    assert len(found.readings) > 50
+
+
 @one_engine
 def test_it_is_confirmed_on_the_page_and_read_by_a_job(settings: Settings) -> None:
     with limited_client(settings, cells=300_000, later=1_000_000) as client:
@@ -131,6 +168,21 @@ def test_it_is_confirmed_on_the_page_and_read_by_a_job(settings: Settings) -> No
         address = f"/api/v1/sessions/{job['session']}"
         assert client.get(address).json()["unit"] == "LOG-1"
         assert LOGS["seconds"] in client.get(f"{address}/file").content
+
+
+@one_engine
+def test_it_stays_where_the_queue_is_full_so_that_it_can_be_confirmed_again(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with limited_client(settings, cells=300_000, later=1_000_000) as client:
+        with monkeypatch.context() as full:
+            full.setattr(changes, "MOST_OPEN", 0)
+            busy = confirmed(client, LOGS["seconds"])
+        assert busy.status_code == 503
+        assert "0 jobs wait already" in busy.text
+        assert 'value="store"' in busy.text
+        assert "Something is still missing" not in busy.text
+        assert sent(client, shown(busy.text), do="store").headers["location"] == "/jobs/1"
 
 
 def confirmed(client: httpx.Client, content: bytes) -> httpx.Response:

@@ -189,6 +189,31 @@ def test_first_rows_of_a_log_are_in_si(client: httpx.Client, layout: str) -> Non
     np.testing.assert_allclose(turning, HANDS.turning[1], rtol=0.03, atol=0.001)
 
 
+def in_counts(per_g: float, per_degree: float, signs: Any = 1.0, per_second: float = 1e3) -> bytes:
+    """A log of whole numbers; ``per_second``: ticks of a clock that its heading calls ms."""
+    felt, turned = HANDS.force / GRAVITY * per_g, DEGREES * signs * per_degree
+    triads = [*triad(xyz("Acc * (LSB)"), felt, ".0f"), *triad(xyz("Gyr * (LSB)"), turned, ".0f")]
+    return written([clock("Time (ms)", counted(per_second)), *triads])
+
+
+def test_what_the_values_contradict_of_the_last_file_is_not_taken(client: httpx.Client) -> None:
+    page = shown(client.post("/upload/layout", files={"file": ("log.csv", in_counts(16384, 131))}).text)
+    said = {"fact.unit": "WIDE", "fact.day": "2026-03-01", "fact.site.latitude_deg": "55.8"}
+    assert sent(client, shown(sent(client, page, **said, do="look").text), do="store").status_code == 303
+    for content, scales, sign, rate in (
+        (in_counts(16384, 131), (1671, 7506), 1, 100.0),
+        (in_counts(2048, 131), (209, 7506), 1, 100.0),
+        (in_counts(16384, 16.4), (1671, 940), 1, 100.0),
+        (in_counts(16384, 131, [1.0, -1.0, 1.0]), (1671, 7506), -1, 100.0),
+        (in_counts(16384, 65.5, per_second=2e3), (1671, 7506), 1, 50.0),
+    ):
+        found = previewed(client, content)["mapping"]["session"]
+        by_name = {sensor["name"]: sensor for sensor in found["sensors"]}
+        assert found["sample_rate_hz"] == pytest.approx(rate)
+        assert [by_name[name]["nominal_scale"] for name in ("AX", "GX")] == pytest.approx(scales, rel=0.05)
+        assert by_name["GY"]["nominal_axis"] == [0, sign, 0]
+
+
 def test_a_gyro_of_the_other_sign_is_proposed_against_its_axis(client: httpx.Client) -> None:
     columns = [clock("t [s]", seconds), *triad(("ax", "ay", "az"), HANDS.force)]
     turning = HANDS.turning * [1.0, -1.0, 1.0]

@@ -85,21 +85,21 @@ def test_a_course_with_a_formula_that_sensors_share() -> None:
     assert TIME is not None
     course = 60 * np.exp(-(TIME - TIME[0]) / (0.3 * np.ptp(TIME)))
     added = sum(on_sensor(size * course, i) for i, size in enumerate((1.0, -0.7, 0.8)))
-    assert places(session_of(added)) == [("shared:warm-up", (0, 1, 2))]
+    assert places(session_of(added)) == [("several-warm-up", (0, 1, 2))]
 
 
 def test_a_course_without_a_formula_that_sensors_share() -> None:
     course = 25 * np.sin(2 * np.pi * 0.8 * PLACE) * np.exp(-PLACE) + 15 * PLACE**2
     added = sum(on_sensor(size * course, i) for i, size in enumerate((1.0, -0.7, 0.8, 1.3)))
     ((name, sensors),) = places(session_of(added))
-    assert (name, sensors) == ("shared:shared-course", (0, 1, 2, 3))
+    assert (name, sensors) == ("several-shared-course", (0, 1, 2, 3))
 
 
 def test_zeros_that_wander_each_by_itself() -> None:
     steps = np.random.default_rng(7).standard_normal((4, ROWS))
     found = places(session_of(sum(on_sensor(6 * np.cumsum(steps[i]), i) for i in range(4))))
     assert (COURSE, (0, 1, 2, 3)) in found
-    assert not any(name.startswith("shared:") for name, _ in found)
+    assert not any(name.startswith("several-") for name, _ in found)
 
 
 def test_a_quadratic_term_that_changed_since_the_history_has_no_name() -> None:
