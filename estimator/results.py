@@ -60,7 +60,7 @@ class KnownCombination:
 
 
 class TurnsOutcome(StrEnum):
-    """What became of the turns by hand in a log of gyros."""
+    """The use made of the turns by hand in a log of gyros."""
 
     USED = "used"
     """Scale factors and axes come from them."""
@@ -263,7 +263,7 @@ class Calibration(
     set_aside: tuple[SetAside, ...] = ()
     """Gross readings that took no part."""
     hand_turns: HandTurns | None = None
-    """Of a log of accelerometers and three or more gyros in orientations set by hand."""
+    """Turns by hand of a log with accelerometers and three or more gyros; None of any other session."""
 
     def sensor(self, name: str) -> SensorCalibration:
         """The calibration of the sensor called ``name``; KeyError if there is none."""

@@ -45,7 +45,7 @@ from estimator.diagnosis.turntable import diagnose_alignment
 from estimator.session import ROTATION_ALIGNMENT, CalibrationSession
 
 Search = Callable[[SearchState], SearchState]
-"""What finds the causes of a session, from nothing found to what holds."""
+"""A search for the causes of a session: takes the state with nothing found, gives that with the findings."""
 
 
 def diagnose(

@@ -1,4 +1,4 @@
-"""Tolerances that somebody entered are told from the defaults that a type begins with, and may judge the
+"""Tolerances that somebody entered are distinguished from the defaults that a type begins with, and may judge the
 sessions that were stored before them.
 
 Revision: 0046, after 0045
@@ -23,7 +23,7 @@ TABLE = sa.table(
 
 
 def upgrade() -> None:
-    """Those that differ from the first ones of their type were entered, and all after them."""
+    """Marks tolerances as entered from the first that differ from those that their type began with."""
     op.add_column(
         "tolerance_revisions", sa.Column("are_entered", sa.Boolean(), nullable=False, server_default=sa.false())
     )

@@ -86,7 +86,7 @@ def look_at(content: bytes | Path, filename: str, mapping: Mapping[str, Any] | N
 
 
 def lines_of(content: bytes | Path, filename: str, mapping: Mapping[str, Any] | None = None) -> Json:
-    """What `look_at` gives, without columns, of a text that cannot be cut as it is understood; SessionError for any
+    """The answer of `look_at`, without columns, for a text that cannot be cut as it is understood; SessionError for any
     other file."""
     preview: Json = read_apart("lines", content, filename, mapping)
     return preview

@@ -100,7 +100,7 @@ def preview(
 def _looked(
     content: bytes | Path, filename: str, mapping: Mapping[str, Any] | None
 ) -> tuple[Json, tuple[Problem, ...]]:
-    """What is seen of the table; of a text that cannot be cut its first lines, and why it cannot."""
+    """The preview of a table; of a text that cannot be cut its first lines, and why it cannot."""
     try:
         return look_at(content, filename, mapping), ()
     except SessionError as fault:

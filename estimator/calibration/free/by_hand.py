@@ -73,7 +73,7 @@ def gyros_by_hand(
 
 
 def scattered(outcome: TurnsOutcome, noise: ExtraNoise) -> HandTurns:
-    """What became of the turns, with their scatter."""
+    """The use made of the turns, with their scatter."""
     return HandTurns(outcome, float(np.sqrt(noise.turns)), float(np.sqrt(noise.parities)))
 
 

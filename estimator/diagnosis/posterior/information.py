@@ -10,8 +10,8 @@ u ~ N(0, V), explains
 
 and leaves for other terms A − AW(V⁻¹ + W'AW)⁻¹W'A, likewise of a, and E − Δ (MacKay 2003, 28; Rasmussen & Williams
 2006, 2.2). A sensor's own cause touches the block of its own readings only, so that the scores of all its shapes are
-one product with that block. Where the scale of the noise is not stated, −½ν ln(1 − Δ/E) stands for ½Δ, ν the degrees
-of freedom of E (O'Hagan & Forster 2004, 11.3).
+one product with that block. Where the scale of the noise is not stated, −½ν ln(1 − Δ/E) takes the place of ½Δ, ν the
+degrees of freedom of E (O'Hagan & Forster 2004, 11.3).
 """
 
 from dataclasses import dataclass, replace
@@ -31,7 +31,7 @@ LEAST = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class InputInformation:
-    """What is known of a change of the inputs. D = R·m readings and P parameters of the history (0 without one)."""
+    """Knowledge of a change of the inputs. D = R·m readings and P parameters of the history (0 without one)."""
 
     A: Array
     """(D, D) per (m/s²)² ((rad/s)²), of the P last dimensionless."""
@@ -77,8 +77,8 @@ class InputInformation:
         return float(gammaln(half) - half * np.log(energy) + energy - np.log(2 * SCALES))
 
     def given(self, W: Array, variance: Array, mean: Array | None = None) -> tuple["InputInformation", float]:
-        """What is left beside a term of columns ``W`` (D, q) whose amplitudes have ``variance`` (q,) and ``mean``, and
-        its ln B."""
+        """The information left beside a term of columns ``W`` (D, q) whose amplitudes have ``variance`` (q,) and
+        ``mean``, and its ln B."""
         AW, a, explained = self.A @ W, self.a, 0.0
         gram = W.T @ AW
         if mean is not None:

@@ -1,4 +1,4 @@
-"""Which sensors follow a course that several share.
+"""The sensors that follow a shared course.
 
 Every set of k out of m sensors is as likely as any other of its number, and every number as any other. Sensors hardly
 overlap, so that the likeliest sets are those with the largest evidence of each sensor alone; the best of them is then

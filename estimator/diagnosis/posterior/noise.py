@@ -19,8 +19,8 @@ from estimator.diagnosis.posterior.term import NOISE, Term
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.refitted import refitted
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
+from estimator.diagnosis.selection.start import left_by, remaining_of_sensors
 from estimator.diagnosis.signatures.noise import NoiseClaim
-from estimator.least_squares import orthonormal
 from estimator.session import Array
 
 ROUNDS = 8
@@ -29,12 +29,6 @@ ROUNDS = 8
 STANDS = 0.01
 """Relative change of a variance at which it stands."""
 
-INVISIBLE = 1e-3
-"""Share of a column that the baseline must leave for it to take a part of the readings."""
-
-NEW_DIRECTION = 1e-6
-"""Share of a trace that must lie outside the others' span to count as a direction of its own: rounding lies below."""
-
 FEWEST = 6.0
 """Degrees of freedom of a kind's residuals from which on they tell a scale."""
 
@@ -42,11 +36,11 @@ FREEDOMS = (3.0, 5.0, 8.0)
 """ν of tails: below three errors have hardly a variance, and far beyond eight they are as good as normal."""
 
 
-def columns_of(baseline: Baseline, terms: Sequence[Term]) -> Array:
-    """(R, m, q) m/s² (rad/s): all that acts, whatever noise is larger than stated."""
+def columns_of(baseline: Baseline, terms: Sequence[Term]) -> Array | None:
+    """(R, m, q) m/s² (rad/s): everything that acts but noise larger than stated; None where nothing does."""
     R, m = baseline.residual.shape
     each = [t.columns[: R * m].reshape(R, m, -1) for t in terms if t.name != NOISE]
-    return np.concatenate(each, axis=-1) if each else np.zeros((R, m, 0))
+    return np.concatenate(each, axis=-1) if each else None
 
 
 def of_quiet_sensors(baseline: Baseline) -> Baseline:
@@ -70,29 +64,12 @@ def typical_of(baseline: Baseline, value: Array) -> Array:
     return usual
 
 
-def remaining(residuals: WhitenedResiduals, named: Array) -> tuple[Array, Array]:
-    """(m,) energy, dimensionless, and (m,) degrees of freedom of what columns ``named`` (R, m, q) leave of sensors."""
-    z, freedom = left_by(residuals, named)
-    of_sensor = residuals.sensor_of_row[: residuals.rows] == np.arange(len(residuals.baseline.unstated))[:, None]
-    return of_sensor @ z**2, of_sensor @ freedom
-
-
-def left_by(residuals: WhitenedResiduals, named: Array) -> tuple[Array, Array]:
-    """(N,) standard errors: the session's residuals beside columns (R, m, q), and (N,) their degrees of freedom."""
-    z, freedom = residuals.z[: residuals.rows], residuals.row_freedom
-    if not named.shape[-1]:
-        return z, freedom
-    trace, raw = residuals.trace(named)[: residuals.rows], np.linalg.norm(residuals.whitened(named), axis=0)
-    basis = orthonormal(trace[:, np.linalg.norm(trace, axis=0) > INVISIBLE * raw], NEW_DIRECTION)
-    return z - basis @ (basis.T @ z), freedom - (basis**2).sum(axis=1)
-
-
-def beside(baseline: Baseline, named: Array) -> Baseline:
+def beside(baseline: Baseline, named: Array | None) -> Baseline:
     """The baseline with the noise that columns ``named`` (R, m, q) leave of the sensors whose noise is not stated: each
     its own, as the others of its kind suggest it."""
     variance = baseline.variance
     for _ in range(ROUNDS):
-        energy, freedom = remaining(WhitenedResiduals.of(replace(baseline, variance=variance)), named)
+        energy, freedom = remaining_of_sensors(WhitenedResiduals.of(replace(baseline, variance=variance)), named)
         value = np.median(variance, axis=0)
         expected = typical_of(baseline, value * energy / np.maximum(freedom, 1.0)) / value
         energy, freedom = with_the_others(energy, freedom, np.where(baseline.unstated, expected, np.nan))
@@ -131,7 +108,7 @@ def off_by_a_factor(baseline: Baseline, terms: Sequence[Term], noisy: Sequence[i
     ``noisy``: sensors that were found noisier than stated; where they are few of a kind the others tell its factor.
     """
     named, kinds = columns_of(baseline, terms), np.array(baseline.setting.kinds)
-    energy, freedom = remaining(WhitenedResiduals.of(baseline), named)
+    energy, freedom = remaining_of_sensors(WhitenedResiduals.of(baseline), named)
     variance, unstated = baseline.variance.copy(), baseline.unstated.copy()
     known = ~np.isin(np.arange(len(kinds)), noisy)
     off = []
@@ -148,7 +125,7 @@ def off_by_a_factor(baseline: Baseline, terms: Sequence[Term], noisy: Sequence[i
         return None
     groups = [kinds == kind for kind in off]
     for _ in range(ROUNDS):
-        energy, freedom = remaining(WhitenedResiduals.of(replace(baseline, variance=variance)), named)
+        energy, freedom = remaining_of_sensors(WhitenedResiduals.of(replace(baseline, variance=variance)), named)
         ratio = [max(energy[g].sum() / max(freedom[g].sum(), 1.0), FAINTEST**2) for g in groups]
         for group, factor in zip(groups, ratio, strict=True):
             variance[:, group] *= factor
@@ -187,7 +164,7 @@ def with_tails(baseline: Baseline, terms: Sequence[Term]) -> OtherNoise | None:
     return found
 
 
-def readings_left(baseline: Baseline, stated: Array, named: Array) -> tuple[Array, Array]:
+def readings_left(baseline: Baseline, stated: Array, named: Array | None) -> tuple[Array, Array]:
     """(R, m) what columns ``named`` leave of each reading, in the sigmas of the ``stated`` variance (R, m), and (R, m)
     its degrees of freedom."""
     z, freedom = left_by(WhitenedResiduals.of(baseline), named)

@@ -28,8 +28,8 @@ TAILS = 0.03
 """Prior odds that errors have tails, all laws together: readings are means of many samples, which are nearly normal."""
 
 SOMETHING = 3.0
-"""Prior odds that some cause of the catalogue acts at all, shared evenly among its causes. The one constant that is
-tuned: at most 1 % of sound sessions may get a name."""
+"""Prior odds that some cause of the catalogue acts at all, shared evenly among them: at most 1 % of sound sessions may
+get a name."""
 
 EACH_CAUSE = SOMETHING / 44
 """Prior odds of one cause of the catalogue, all its places and shapes together."""

@@ -13,7 +13,7 @@ GAIN = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Remainder:
-    """What some terms leave, their ln posterior odds against none, and every candidate weighed there."""
+    """The information left beside some terms, their ln posterior odds against none, and all candidates there."""
 
     terms: tuple[Term, ...]
     info: InputInformation
@@ -21,7 +21,7 @@ class Remainder:
     known: dict[Kind, list[PlaceCandidate]] = field(default_factory=dict)
 
     def candidates(self, kinds: Iterable[Kind]) -> list[PlaceCandidate]:
-        """Those of some kinds."""
+        """The candidates of some kinds."""
         found: list[PlaceCandidate] = []
         for kind in kinds:
             if kind not in self.known:
@@ -41,9 +41,9 @@ class TermModel:
 
     start: InputInformation
     of_causes: tuple[Kind, ...]
-    """Those of causes of the catalogue."""
+    """Kinds of causes of the catalogue."""
     of_courses: tuple[Kind, ...]
-    """Those of everything else."""
+    """Kinds of everything else."""
     known: dict[frozenset[int], Remainder] = field(default_factory=dict)
 
     @property
@@ -52,7 +52,7 @@ class TermModel:
         return self.of_causes + self.of_courses
 
     def beside(self, terms: Sequence[Term]) -> Remainder:
-        """What some terms leave."""
+        """The remainder beside some terms."""
         key = frozenset(map(id, terms))
         if key not in self.known:
             info, value = self.start, 0.0

@@ -19,7 +19,7 @@ HOPELESS = -10.0
 """ln posterior odds, as if sensors did not overlap, below which a shape is not weighed exactly."""
 
 PREFIX = "several-"
-"""It tells the name of a cause of several sensors from that of one."""
+"""Prefix of the name of a cause of several sensors."""
 
 
 class SharedCauses(Kind):

@@ -101,11 +101,11 @@ class TermSolution:
 
     @property
     def here(self) -> Remainder:
-        """What all terms leave."""
+        """The remainder beside all terms."""
         return self.session.model.beside(self.terms)
 
     def without(self, term: Term) -> Remainder:
-        """What the others leave."""
+        """The remainder beside the other terms."""
         return self.session.model.beside(tuple(t for t in self.terms if t is not term))
 
     def gained(self, term: Term) -> float:

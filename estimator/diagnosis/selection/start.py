@@ -108,15 +108,20 @@ def with_residual_scatter(baseline: Baseline, groups: Sequence[Sequence[int]], n
 
 def remaining_of_sensors(residuals: WhitenedResiduals, named: Array | None) -> tuple[Array, Array]:
     """(m,) energy, dimensionless, and (m,) degrees of freedom of what effects (R, m, q) leave of each sensor."""
-    rows, m = residuals.rows, len(residuals.baseline.unstated)
-    z, freedom = residuals.z[:rows], residuals.row_freedom
-    if named is not None:
-        trace, raw = residuals.trace(named)[:rows], np.linalg.norm(residuals.whitened(named), axis=0)
-        shown = np.linalg.norm(trace, axis=0) > INVISIBLE * raw
-        basis = orthonormal(trace[:, shown], NEW_DIRECTION)
-        z, freedom = z - basis @ (basis.T @ z), freedom - (basis**2).sum(axis=1)
-    of_sensor = residuals.sensor_of_row[:rows] == np.arange(m)[:, None]
+    z, freedom = left_by(residuals, named)
+    of_sensor = residuals.sensor_of_row[: residuals.rows] == np.arange(len(residuals.baseline.unstated))[:, None]
     return of_sensor @ z**2, of_sensor @ freedom
+
+
+def left_by(residuals: WhitenedResiduals, named: Array | None) -> tuple[Array, Array]:
+    """(N,) standard errors, the session's rows beside effects (R, m, q), any unit, and (N,) their degrees of freedom;
+    beside nothing where None."""
+    z, freedom = residuals.z[: residuals.rows], residuals.row_freedom
+    if named is None:
+        return z, freedom
+    trace, raw = residuals.trace(named)[: residuals.rows], np.linalg.norm(residuals.whitened(named), axis=0)
+    basis = orthonormal(trace[:, np.linalg.norm(trace, axis=0) > INVISIBLE * raw], NEW_DIRECTION)
+    return z - basis @ (basis.T @ z), freedom - (basis**2).sum(axis=1)
 
 
 def restart_from(state: SearchState, baseline: Baseline) -> SearchState:

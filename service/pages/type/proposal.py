@@ -26,7 +26,7 @@ DIGITS = 2
 
 
 def proposed(store: Store, known: UnitType) -> WantedTolerances:
-    """What the sessions of the type's units achieve; where they show nothing, the tolerance in force."""
+    """Tolerances that the sessions of the type's units keep; where they show nothing, the one in force."""
     found: dict[tuple[str, str], list[Achieved]] = {}
     for one in Sessions(store).achieved(known.name):
         found.setdefault((one.kind, one.parameter), []).append(one)

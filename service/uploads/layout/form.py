@@ -198,7 +198,7 @@ def _kinds(fields: Mapping[str, str], before: Mapping[str, Any], columns: list[J
 
 
 def _chosen(fields: Mapping[str, str], before: Mapping[str, Any]) -> Json:
-    """Settings of the parser; an empty kind of record stands for rows of all kinds."""
+    """Settings of the parser; an empty kind of record means rows of all kinds."""
     settings: Json = {}
     fields = {**fields, "table.separator": fields.get("table.sign") or fields.get("table.separator", "")}
     for key in CHOSEN:

@@ -2,8 +2,6 @@
 
 from functools import cache
 
-import numpy as np
-
 from estimator.causes import CATALOGUE
 from estimator.causes.contract import Signature
 from estimator.diagnosis.diagnose import initial_state
@@ -46,8 +44,3 @@ def solved(
         return state.residuals if baseline is state.baseline else restart_from(state, baseline).residuals
 
     return solve(state.baseline, residuals_of, SIGNATURES)
-
-
-def student(rng: np.random.Generator, freedom: float, shape: tuple[int, ...]) -> Array:
-    """Errors of variance one with the tails of Student's t."""
-    return np.asarray(rng.standard_t(freedom, shape) * np.sqrt((freedom - 2) / freedom))

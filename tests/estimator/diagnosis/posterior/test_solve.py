@@ -7,8 +7,9 @@ import pytest
 
 from estimator.diagnosis.diagnose import diagnose
 from estimator.diagnosis.posterior.write import posterior
+from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.session import Array, CalibrationSession
-from tests.estimator.diagnosis.posterior.small import solved, student
+from tests.estimator.diagnosis.posterior.small import solved
 from tests.estimator.diagnosis.selection.small import ROWS, SENSOR, WHERE, effect, measured, on_sensor
 
 
@@ -37,17 +38,21 @@ def test_noise_as_stated_is_believed() -> None:
     assert best.noise is None
 
 
-def test_errors_with_tails_give_no_name() -> None:
-    """Beside normal noise of the same variance, which is taken as it is."""
-    named = 0
+def test_readings_far_out_on_all_sensors_are_tails_and_mostly_no_names() -> None:
+    """Six readings of ninety-six, off by six standard errors."""
+    baseline, session = baseline_of(stated()), stated()
+    sigma = np.sqrt(baseline.variance) * baseline.parameters.scale
+    tailed, names, names_if_normal = [], 0, 0
     for seed in range(6):
         rng = np.random.default_rng((12, seed))
-        session = stated()
-        clean = session.readings - measured().readings
-        tails = WHERE.noise * student(rng, 3.0, session.readings.shape)
-        best, _ = solved(replace(session, readings=session.readings + clean + 2 * tails))
-        named += any(t.named for t in best.terms)
-    assert named <= 1
+        far = np.zeros(sigma.size)
+        far[rng.choice(far.size, 6, replace=False)] = 6 * rng.choice([-1, 1], 6)
+        best, normal = solved(replace(session, readings=session.readings + far.reshape(sigma.shape) * sigma))
+        tailed.append(best.noise is not None and best.noise.tails)
+        names += sum(t.named for t in best.terms)
+        names_if_normal += sum(t.named for t in normal.terms)
+    assert all(tailed)
+    assert names < names_if_normal / 3
 
 
 def test_two_causes_that_noise_stands_in_for_are_both_found() -> None:
