@@ -2,6 +2,8 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import groupby
 
 import numpy as np
 
@@ -28,23 +30,31 @@ class ColumnBlocks(ListedTerms):
 
     def __init__(self, blocks: Sequence[TermColumns], sizes: Array) -> None:
         """``sizes`` (L,), in the unit of the columns."""
-        self.blocks, self.sizes = tuple(blocks), sizes
-        super().__init__([block.place for block in blocks for _ in sizes])
+        self.blocks = tuple(sorted(blocks, key=lambda block: block.W.shape[1]))
+        self.sizes = sizes
+        super().__init__([block.place for block in self.blocks for _ in sizes])
 
     def weighed(self, info: InputInformation) -> Array:
         if not self.blocks:
             return np.zeros(0)
-        each = np.split(info.A @ self.together, np.cumsum([b.W.shape[1] for b in self.blocks])[:-1], axis=1)
-        values = [
-            info.log_evidence_of((b.W.T @ AW)[None], (info.a @ b.W)[None], self.sizes)[0] + b.log_prior
-            for b, AW in zip(self.blocks, each, strict=True)
-        ]
-        return np.concatenate(values) - np.log(len(self.sizes))
+        moved, along = np.split(info.A @ self.together, self.ends, axis=1), np.split(info.a @ self.together, self.ends)
+        values = []
+        for _, numbers in groupby(range(len(self.blocks)), key=lambda k: self.blocks[k].W.shape[1]):
+            alike = list(numbers)
+            gram = np.stack([self.blocks[k].W.T @ moved[k] for k in alike])
+            values.append(info.log_evidence_of(gram, np.stack([along[k] for k in alike]), self.sizes))
+        prior = np.array([block.log_prior for block in self.blocks])[:, None] - np.log(len(self.sizes))
+        return np.asarray((np.concatenate(values) + prior).ravel())
 
-    @property
+    @cached_property
     def together(self) -> Array:
         """(D, Σq) all columns."""
         return np.concatenate([block.W for block in self.blocks], axis=1)
+
+    @cached_property
+    def ends(self) -> Array:
+        """Columns at which every block but the first begins."""
+        return np.cumsum([block.W.shape[1] for block in self.blocks])[:-1]
 
     def term(self, k: int) -> Term:
         block, size = self.blocks[k // len(self.sizes)], self.sizes[k % len(self.sizes)]

@@ -37,23 +37,34 @@ FAINT = 1e-4
 """Share of a kernel's largest direction below which one counts as none."""
 
 
-def orders(setting: Setting, sensor: int) -> Iterator[tuple[str, Array]]:
-    """Orders along which a sensor's zero may run: (R,) places, relative, 0 … 1."""
-    keys = [("the order measured", np.arange(setting.rows, dtype=float)), ("the sensor's input", setting.a[:, sensor])]
+def common_orders(setting: Setting) -> dict[str, Array]:
+    """Orders along which every sensor's zero may run: (R,) places, relative, 0 … 1."""
+    keys = {"the order measured": np.arange(setting.rows, dtype=float)}
     if setting.temperature is not None and len(np.unique(setting.temperature)) >= FEWEST:
-        keys.append(("temperature", setting.temperature))
+        keys["temperature"] = setting.temperature
     if setting.beta is not None:
-        keys.append(("β", np.mod(setting.beta, 2 * np.pi)))
+        keys["β"] = np.mod(setting.beta, 2 * np.pi)
+    return relative(keys)
+
+
+def own_orders(setting: Setting, sensor: int) -> dict[str, Array]:
+    """Further orders of one sensor: (R,) places, relative, 0 … 1."""
+    keys = {"the sensor's input": setting.a[:, sensor]}
     if setting.vibration is not None and varies(setting.vibration[:, [sensor]]):
-        keys.append(("the vibration", np.sqrt(setting.vibration[:, sensor])))
-    yield from ((name, (key - key.min()) / np.ptp(key)) for name, key in keys if np.ptp(key) > 0)
+        keys["the vibration"] = np.sqrt(setting.vibration[:, sensor])
+    return relative(keys)
 
 
-def kernels(setting: Setting, sensor: int) -> Iterator[tuple[str, Array]]:
-    """Orders with covariances (R, R), dimensionless, of courses along each; where there is a stand, also around β
-    together with another order, as whatever depends on both is smooth in both."""
-    places = dict(orders(setting, sensor))
-    yield from ((name, kernel) for name, place in places.items() for kernel in along(place))
+def relative(keys: dict[str, Array]) -> dict[str, Array]:
+    """Places from 0 to 1 along every key (R,) that varies."""
+    return {name: (key - key.min()) / np.ptp(key) for name, key in keys.items() if np.ptp(key) > 0}
+
+
+def common_kernels(setting: Setting) -> Iterator[tuple[str, Array]]:
+    """Covariances (R, R), dimensionless, of courses along the orders that sensors have in common; where there is a
+    stand, also around β together with another order, as whatever depends on both is smooth in both."""
+    places = common_orders(setting)
+    yield from along_each(places)
     if setting.beta is None or setting.flipped is None:
         return
     turning = [around(setting.beta, length) for length in ROUND]
@@ -63,6 +74,11 @@ def kernels(setting: Setting, sensor: int) -> Iterator[tuple[str, Array]]:
     for name, both in TOGETHER.items():
         if name in places:
             yield from ((both, bending(places[name], LENGTHS[-1]) * kernel) for kernel in turning)
+
+
+def along_each(places: dict[str, Array]) -> Iterator[tuple[str, Array]]:
+    """Orders with the covariances of courses along each of them."""
+    yield from ((name, kernel) for name, place in places.items() for kernel in along(place))
 
 
 def along(place: Array) -> Iterator[Array]:
@@ -82,18 +98,25 @@ def root(kernel: Array) -> Array:
     return np.asarray(turn[:, keep] * np.sqrt(size[keep]))
 
 
-def waves(setting: Setting, sensor: int) -> Iterator[tuple[str, Array]]:
-    """Orders, and sine and cosine (R, 2) along them of every number of periods that the rows resolve; fewer periods
-    than `FEWEST_PERIODS` are courses of a kernel."""
-    for order, place in orders(setting, sensor):
+def common_waves(setting: Setting) -> Iterator[tuple[str, Array]]:
+    """Orders that sensors have in common, and sine and cosine (R, 2) along them of every number of periods that the
+    rows resolve; around β its harmonics."""
+    for order, place in common_orders(setting).items():
+        by_time = clock(setting) if order == "the order measured" else None
         if order == "β":
             yield from ((order, around_the_head) for around_the_head in harmonics(setting))
-            continue
-        steps = [place]
-        if order == "the order measured" and (by_time := clock(setting)) is not None:
-            steps.append(by_time)
+        else:
+            yield from waves({order: place})
+        if by_time is not None:
+            yield from waves({order: by_time})
+
+
+def waves(places: dict[str, Array]) -> Iterator[tuple[str, Array]]:
+    """Orders, and waves (R, 2) along each of every number of periods that its places resolve; fewer periods than
+    `FEWEST_PERIODS` are courses of a kernel."""
+    for order, place in places.items():
         periods = np.arange(2 * FEWEST_PERIODS, len(np.unique(np.round(place, 9))) + 1) / 2
-        yield from ((order, wave(2 * np.pi * k * step)) for step in steps for k in periods)
+        yield from ((order, wave(2 * np.pi * k * place)) for k in periods)
 
 
 def harmonics(setting: Setting) -> Iterator[Array]:

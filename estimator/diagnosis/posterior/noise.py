@@ -43,6 +43,11 @@ def columns_of(baseline: Baseline, terms: Sequence[Term]) -> Array | None:
     return np.concatenate(each, axis=-1) if each else None
 
 
+def unlike_noise(baseline: Baseline, terms: Sequence[Term]) -> list[Term]:
+    """The terms that noise of another law cannot be taken for: those of fewer columns than there are rows."""
+    return [t for t in terms if t.columns.shape[1] < len(baseline.variance)]
+
+
 def of_quiet_sensors(baseline: Baseline) -> Baseline:
     """The baseline in whose unstated noise no effect of a few sensors hides: none is noisier than usual of its kind."""
     if not baseline.unstated.any():
@@ -107,9 +112,9 @@ def off_by_a_factor(baseline: Baseline, terms: Sequence[Term], noisy: Sequence[i
 
     ``noisy``: sensors that were found noisier than stated; where they are few of a kind the others tell its factor.
     """
-    named, kinds = columns_of(baseline, terms), np.array(baseline.setting.kinds)
+    named, kinds = columns_of(baseline, unlike_noise(baseline, terms)), np.array(baseline.setting.kinds)
     energy, freedom = remaining_of_sensors(WhitenedResiduals.of(baseline), named)
-    variance, unstated = baseline.variance.copy(), baseline.unstated.copy()
+    variance, unstated = baseline.variance.copy(), baseline.unstated
     known = ~np.isin(np.arange(len(kinds)), noisy)
     off = []
     for kind in dict.fromkeys(baseline.setting.kinds):
@@ -134,16 +139,16 @@ def off_by_a_factor(baseline: Baseline, terms: Sequence[Term], noisy: Sequence[i
     prior, claims = 0.0, []
     for kind, group in zip(off, groups, strict=True):
         nu = float(freedom[group].sum())
-        prior += float(np.log(MISSTATED))
+        prior += float(np.log(MISSTATED) - 0.5 * np.log(nu / 2))
         factor = float(np.median(variance[:, group] / baseline.variance[:, group]))
         claims.append(NoiseClaim(kind, tuple(np.flatnonzero(group).tolist()), factor, nu))
-        unstated |= group
-    return OtherNoise(refitted(replace(baseline, variance=variance, unstated=unstated)), prior, tuple(claims))
+    return OtherNoise(refitted(replace(baseline, variance=variance)), prior, tuple(claims))
 
 
 def with_tails(baseline: Baseline, terms: Sequence[Term]) -> OtherNoise | None:
-    """The noise with the likeliest tails, as what terms leave but single readings shows; None where it is normal."""
-    named = columns_of(baseline, [t for t in terms if np.count_nonzero(t.columns) > 1])
+    """The noise with the likeliest tails, as what terms leave shows, but for those of single readings; None where it is
+    normal."""
+    named = columns_of(baseline, [t for t in unlike_noise(baseline, terms) if np.count_nonzero(t.columns) > 1])
     best, found = 0.0, None
     for nu in FREEDOMS:
         prior = float(np.log(TAILS / len(FREEDOMS)))

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from estimator.diagnosis.posterior.information import InputInformation
-from estimator.diagnosis.posterior.kernels import kernels, root, waves
+from estimator.diagnosis.posterior.kernels import along_each, common_kernels, common_waves, own_orders, root, waves
 from estimator.diagnosis.posterior.layout import InputLayout
 from estimator.diagnosis.posterior.priors import OWN_COURSE, SIZES
 from estimator.diagnosis.posterior.term import COURSE, ListedTerms, Term, UnknownCourse
@@ -34,10 +34,13 @@ class OwnCourses(ListedTerms):
 
     def __init__(self, residuals: WhitenedResiduals) -> None:
         self.layout, setting = InputLayout.of(residuals), residuals.baseline.setting
+        smooth = [(order, root(kernel)) for order, kernel in common_kernels(setting)]
+        turning = list(common_waves(setting))
         self.families: list[CourseFamily] = []
         for i in range(self.layout.m):
-            smooth = [(order, root(kernel)) for order, kernel in kernels(setting, i)]
-            self.families += [self.family(i, smooth), self.family(i, list(waves(setting, i)))]
+            own = own_orders(setting, i)
+            smooth_too = [(order, root(kernel)) for order, kernel in along_each(own)]
+            self.families += [self.family(i, smooth + smooth_too), self.family(i, [*turning, *waves(own)])]
         self.labels = [(family, k) for family in self.families for k in range(len(family.orders))]
         super().__init__([(COURSE, (family.sensor,)) for family, _ in self.labels for _ in SIZES])
 

@@ -34,8 +34,13 @@ get a name."""
 EACH_CAUSE = SOMETHING / 44
 """Prior odds of one cause of the catalogue, all its places and shapes together."""
 
-ONE_WITHIN = 0.2
-"""Standard deviation of an amplitude that must be one: a clipped reading's limit lies between two levels of input."""
+FURTHER = float(np.log(0.03))
+"""ln of the odds that something else happened in the same session, over those that anything did: misfortunes are
+independent, and two of them are rarer than one."""
+
+ONE_WITHIN = 0.6
+"""Standard deviation of the amplitude of a single clipped reading, one at the limit that is tried: the true limit lies
+anywhere between there and twice as deep."""
 
 OWN_COURSE = 0.05
 """Prior odds that some sensor has a course that nothing describes: the catalogue holds what usually happens."""

@@ -2,13 +2,21 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 from estimator.diagnosis.posterior.information import InputInformation
-from estimator.diagnosis.posterior.priors import MOST
+from estimator.diagnosis.posterior.priors import FURTHER, MOST
 from estimator.diagnosis.posterior.term import Kind, PlaceCandidate, Term
 
-GAIN = 1e-6
-"""ln posterior that a change must gain: rounding is smaller."""
+GAIN = 0.1
+"""ln posterior that a change must gain: less decides nothing."""
+
+FEW = 3
+"""Causes that are tried together before anything else: what takes more is rarely said by names alone."""
+
+
+HOPELESS = 30.0
+"""ln posterior odds by which terms may be behind that dropping and replacing can still make up."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -18,6 +26,8 @@ class Remainder:
     terms: tuple[Term, ...]
     info: InputInformation
     log_posterior: float
+    misfortunes: int
+    """Number of things that are known to have happened already."""
     known: dict[Kind, list[PlaceCandidate]] = field(default_factory=dict)
 
     def candidates(self, kinds: Iterable[Kind]) -> list[PlaceCandidate]:
@@ -25,7 +35,8 @@ class Remainder:
         found: list[PlaceCandidate] = []
         for kind in kinds:
             if kind not in self.known:
-                self.known[kind] = kind.candidates(self.info)
+                each = kind.candidates(self.info)
+                self.known[kind] = [c.beside_others() for c in each] if self.misfortunes else each
             found += self.known[kind]
         return found
 
@@ -41,15 +52,17 @@ class TermModel:
 
     start: InputInformation
     of_causes: tuple[Kind, ...]
-    """Kinds of causes of the catalogue."""
-    of_courses: tuple[Kind, ...]
+    """Kinds of causes of the catalogue, each on one sensor or in the stand."""
+    of_others: tuple[Kind, ...]
     """Kinds of everything else."""
+    misfortunes: int = 0
+    """Number of things that are known to have happened, beside what is sought."""
     known: dict[frozenset[int], Remainder] = field(default_factory=dict)
 
     @property
     def kinds(self) -> tuple[Kind, ...]:
         """All kinds of terms."""
-        return self.of_causes + self.of_courses
+        return self.of_causes + self.of_others
 
     def beside(self, terms: Sequence[Term]) -> Remainder:
         """The remainder beside some terms."""
@@ -58,32 +71,50 @@ class TermModel:
             info, value = self.start, 0.0
             for term in terms:
                 info, gained = info.given(term.columns, term.variance, term.mean)
-                value += gained + term.log_prior
-            self.known[key] = Remainder(tuple(terms), info, value)
+                value += gained + term.log_prior + term.log_place
+            count = self.misfortunes + len(terms)
+            further = min(len(terms), max(count - 1, 0))
+            self.known[key] = Remainder(tuple(terms), info, value + further * FURTHER, count)
         return self.known[key]
 
 
 def search(model: TermModel) -> tuple[Term, ...]:
-    """The likeliest terms that are reached from nothing, and from what causes alone would make of the session."""
-    causes = climbed(model, model.of_causes)
-    whole = climbed(model, model.kinds, causes)
-    if not causes and not whole:
+    """The likeliest terms that are reached from nothing, and from the causes that alone would make most of the session.
+
+    A course that is taken first, of one sensor or of several, may hide what several causes explain together.
+    """
+    whole = climbed(model, model.kinds)
+    if all(term.named and len(term.sensors) < 2 for term in whole):
         return whole
-    rival = climbed(model, model.kinds)
+    best = model.beside(whole).log_posterior - HOPELESS
+    rival = grown(model, model.of_causes, (), FEW)
+    for climb in (partial(grown, most=MOST), climbed):
+        if model.beside(rival).log_posterior < best:
+            return whole
+        rival = climb(model, model.kinds, rival)
     return max((whole, rival), key=lambda terms: model.beside(terms).log_posterior)
 
 
 def climbed(model: TermModel, kinds: Sequence[Kind], start: Sequence[Term] = ()) -> tuple[Term, ...]:
     """The likeliest terms of some kinds, climbed to from ``start``: added as long as that gains, then dropped or
     replaced."""
-    terms = tuple(start)
+    terms = grown(model, kinds, start, MOST)
     for _ in range(4 * MOST):
-        here = model.beside(terms)
-        new = here.best(kinds) if len(terms) < MOST else None
-        better = (*terms, new.term()) if new is not None and new.value > GAIN else replaced(model, kinds, here)
+        better = replaced(model, kinds, model.beside(terms))
         if better is None:
             break
-        terms = better
+        terms = grown(model, kinds, better, MOST)
+    return terms
+
+
+def grown(model: TermModel, kinds: Sequence[Kind], start: Sequence[Term], most: int) -> tuple[Term, ...]:
+    """The terms of ``start`` and those that gain beside them, the likeliest first, ``most`` in all."""
+    terms = tuple(start)
+    while len(terms) < most:
+        new = model.beside(terms).best(kinds)
+        if new is None or new.value <= GAIN:
+            break
+        terms = (*terms, new.term())
     return terms
 
 
@@ -97,8 +128,8 @@ def replaced(model: TermModel, kinds: Sequence[Kind], here: Remainder) -> tuple[
         if -lost > best:
             best, found = -lost, rest
         new = there.best(kinds)
-        if new is not None and new.best - lost > best:
-            best, found = new.best - lost, (*rest, new.term())
+        if new is not None and new.value - lost > best:
+            best, found = new.value - lost, (*rest, new.term())
     return found
 
 

@@ -29,6 +29,8 @@ class SensorShapes:
     """(S, q') amplitude, in the cause's SI unit, of a unit of size; of its own columns."""
     log_prior: float
     """ln prior odds of one shape, all its sizes together."""
+    open_by: Array
+    """(S,) standard deviation of an amplitude that must be one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +49,8 @@ class ShapeBlock:
     """(L,) m/s² (rad/s)."""
     fixed: Array
     """(S,) amplitude that the cause must have, in units of size; 0 where it is free."""
+    within: Array
+    """(S,) standard deviation of that amplitude, in units of size."""
 
 
 class SensorCauses(ListedTerms):
@@ -70,7 +74,10 @@ class SensorCauses(ListedTerms):
         fixed = np.concatenate([1 / p.scale[:, 0] if p.cause.bounded else np.zeros(len(p.scale)) for p in parts])
         sizes = SIZES * self.layout.unit[i]
         rows = np.concatenate([p.rows for p in parts])
-        return ShapeBlock(i, tuple(parts), self.layout.of_sensor(i), rows, prior[:, None], sizes, fixed)
+        open_by = np.concatenate([p.open_by if p.cause.bounded else np.zeros(len(p.scale)) for p in parts])
+        return ShapeBlock(
+            i, tuple(parts), self.layout.of_sensor(i), rows, prior[:, None], sizes, fixed, open_by * fixed
+        )
 
     def of_cause(self, cause: SensorCause) -> Iterator[SensorShapes]:
         """The shapes of a cause on every sensor, under every assumption about the history."""
@@ -89,7 +96,7 @@ class SensorCauses(ListedTerms):
             prior = float(np.log(EACH_CAUSE / places / len(assumed)))
             for since in assumed:
                 rows = self.placed(cause, i, since, grid, terms, scale)
-                yield SensorShapes(cause, i, since, tuple(grid), rows, scale, prior)
+                yield SensorShapes(cause, i, since, tuple(grid), rows, scale, prior, open_by(terms))
 
     def placed(
         self, cause: SensorCause, i: int, since: Since, grid: Sequence[tuple[float, ...]], terms: Array, scale: Array
@@ -145,9 +152,10 @@ class SensorCauses(ListedTerms):
         value = info.log_evidence_of(gram, along, block.sizes)
         bounded = block.fixed != 0
         if bounded.any():
-            one = block.fixed[bounded]
-            d, b = gram[bounded, 0, 0] * one**2, along[bounded, 0] * one
-            about = info.log_evidence_of(d[:, None, None], (b - d)[:, None], np.array([ONE_WITHIN]), 2 * b - d)
+            one, within = block.fixed[bounded], block.within[bounded]
+            d, b = gram[bounded, 0, 0], along[bounded, 0]
+            gap, explained = (b - d * one) * within, 2 * b * one - d * one**2
+            about = info.log_evidence_of((d * within**2)[:, None, None], gap[:, None], np.ones(1), explained)
             value[bounded] = -np.inf
             value[bounded, 0] = about[:, 0] + np.log(len(SIZES))
         return np.asarray(value + block.log_prior)
@@ -160,7 +168,15 @@ class SensorCauses(ListedTerms):
         if part.cause.bounded:
             one = np.zeros(columns.shape[1])
             one[0] = 1 / part.scale[s, 0]
-            variance, mean = np.where(one != 0, (ONE_WITHIN * one) ** 2, one[0] ** 2), one
+            variance, mean = np.where(one != 0, (part.open_by[s] * one) ** 2, one[0] ** 2), one
         prior = part.log_prior - (0.0 if part.cause.bounded else float(np.log(len(SIZES))))
         effect = CauseEffect(part.cause, part.nonlinear[s], part.since, part.scale[s])
         return Term((part.cause.identifier, (part.sensor,)), columns, variance, prior, True, mean, effect)
+
+
+def open_by(terms: Array) -> Array:
+    """(S,) standard deviation of an amplitude that must be one, of ``terms`` (S, R, q): the limit of clipped readings
+    lies anywhere below the lowest of them, which matters the less the deeper the others are cut."""
+    cut = np.abs(terms[:, :, 0])
+    lowest, count = np.where(cut > 0, cut, np.inf).min(axis=1), (cut > 0).sum(axis=1)
+    return np.asarray(ONE_WITHIN * np.where(count > 0, lowest, 0.0) * count / np.maximum(cut.sum(axis=1), 1e-300))

@@ -10,6 +10,7 @@ from scipy.special import logsumexp
 from estimator.causes.contract import Signature
 from estimator.diagnosis.posterior.applied_courses import AppliedCourses
 from estimator.diagnosis.posterior.common_causes import CommonCauses
+from estimator.diagnosis.posterior.curved import about_effects
 from estimator.diagnosis.posterior.free_shared import FreeShared
 from estimator.diagnosis.posterior.information import InputInformation
 from estimator.diagnosis.posterior.moved_parameters import MovedParameters
@@ -24,6 +25,7 @@ from estimator.diagnosis.posterior.noise import (
 )
 from estimator.diagnosis.posterior.noisy_sensors import NoisySensors
 from estimator.diagnosis.posterior.own_courses import OwnCourses
+from estimator.diagnosis.posterior.priors import FURTHER
 from estimator.diagnosis.posterior.refine import refined
 from estimator.diagnosis.posterior.search import Remainder, TermModel, search
 from estimator.diagnosis.posterior.sensor_causes import SensorCauses
@@ -39,6 +41,9 @@ ResidualsOf = Callable[[Baseline], WhitenedResiduals]
 
 SEARCHES = 3
 """Searches at most, each in the noise that the terms of the one before leave."""
+
+FACTORS = 3
+"""Searches at most in noise that is off by a factor: the first takes effects that noise hid for noise."""
 
 SETTLED = 0.05
 """Relative change of a variance below which it stands: hundreds of readings tell it to some per cent."""
@@ -62,14 +67,16 @@ class SessionTerms:
     model: TermModel
 
     @classmethod
-    def of(cls, residuals: WhitenedResiduals, catalogue: Sequence[Signature]) -> "SessionTerms":
-        """The kinds of a catalogue's causes, and those of everything else."""
+    def of(cls, residuals: WhitenedResiduals, catalogue: Sequence[Signature], misfortunes: int = 0) -> "SessionTerms":
+        """The kinds of a catalogue's causes, and those of everything else, where so many things happened besides."""
         start, T = InputInformation.of(residuals)
         single = SensorCauses(residuals, catalogue)
         shared = SharedCauses(single)
-        of_causes = (single, CommonCauses(residuals, catalogue), shared, FreeShared(residuals))
+        of_causes = single, CommonCauses(residuals, catalogue)
         makers = (OwnCourses, NoisySensors, AppliedCourses, WanderingZeros, MovedParameters)
-        return cls(residuals, T, single, shared, TermModel(start, of_causes, tuple(make(residuals) for make in makers)))
+        others = shared, FreeShared(residuals), *(make(residuals) for make in makers)
+        model = TermModel(start, of_causes, others, misfortunes)
+        return cls(residuals, T, single, shared, model)
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +117,7 @@ class TermSolution:
 
     def gained(self, term: Term) -> float:
         """ln B of a term beside the others."""
-        return self.here.log_posterior - self.without(term).log_posterior - term.log_prior
+        return self.without(term).info.given(term.columns, term.variance, term.mean)[1]
 
     def rivals(self, term: Term) -> list[PlaceCandidate]:
         """The candidates that may stand in for a term, itself among them: they lose where it is there."""
@@ -133,14 +140,20 @@ def solve(
 
     ``residuals_of``: the residuals of the session, with its change since the history, in the noise of a baseline.
     """
-    start = residuals_of(baseline)
+    start, quiet = residuals_of(baseline), of_quiet_sensors(baseline)
     solved = partial(solved_in, start, residuals_of, catalogue)
-    stated = best = solved(of_quiet_sensors(baseline))
-    factor = off_by_a_factor(baseline, best.terms, [n.sensor for n in best.noisy])
-    for noise in (factor, with_tails(best.session.residuals.baseline, best.terms)):
-        if noise is not None:
-            best = max(best, solved(noise.baseline, noise), key=lambda solution: solution.log_evidence)
-    return best, stated
+    stated = solved(quiet)
+    rivals = [stated]
+    for _ in range(FACTORS):
+        found = rivals[-1]
+        factor = off_by_a_factor(baseline, found.terms, [n.sensor for n in found.noisy])
+        if factor is None or is_alike(factor.baseline, found.session.residuals.baseline):
+            break
+        rivals.append(solved(factor.baseline, factor))
+    tailed = [(with_tails(stated.session.residuals.baseline, stated.terms), stated.noisy)]
+    tailed += [(with_tails(quiet, stated.terms), ())] if stated.noisy else []
+    rivals += [solved(noise.baseline, noise, known) for noise, known in tailed if noise is not None]
+    return max(rivals, key=lambda solution: solution.log_evidence), stated
 
 
 def solved_in(
@@ -149,22 +162,27 @@ def solved_in(
     catalogue: Sequence[Signature],
     baseline: Baseline,
     noise: OtherNoise | None = None,
+    known: Sequence[Noisy] = (),
 ) -> TermSolution:
     """The likeliest terms in the noise of a baseline; where it is not stated, and of sensors noisier than stated, in
-    the noise that they leave."""
-    noisy: dict[int, Noisy] = {}
+    the noise that they leave. ``known``: sensors whose larger noise the baseline has already."""
+    noisy = {n.sensor: n for n in known}
     for _ in range(SEARCHES):
-        session = SessionTerms.of(residuals_of(baseline), catalogue)
+        session = SessionTerms.of(residuals_of(baseline), catalogue, len(noisy))
         solution = TermSolution(session, search(session.model), 0.0)
         noisy |= {n.sensor: n for n in noisy_in(solution)}
         quieter = of_noisy_sensors(baseline, solution.terms)
         if quieter is None and noise is None and baseline.unstated.any():
             quieter = beside(baseline, columns_of(baseline, solution.terms))
-        if quieter is None or is_alike(quieter, baseline):
+        if quieter is not None and is_alike(quieter, baseline):
+            quieter = None
+        curved = about_effects(quieter or baseline, session.model.start, solution.here)
+        if quieter is None and curved is None:
             break
-        baseline = quieter
+        baseline = curved or quieter or baseline
     terms = at_their_best(session, solution.terms)
     value = session.model.beside(terms).log_posterior + sum(n.log_prior for n in noisy.values())
+    value += FURTHER * max(len(noisy) - 1, 0)
     value += session.model.start.log_scale_free + (0.0 if noise is None else noise.log_prior)
     if session.residuals.baseline is not start.baseline:
         value += log_likelihood_ratio(session.residuals, start)

@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum, auto
 from functools import partial
 from typing import ClassVar
@@ -11,6 +11,7 @@ import numpy as np
 
 from estimator.causes.contract import Signature
 from estimator.diagnosis.posterior.information import InputInformation
+from estimator.diagnosis.posterior.priors import FURTHER
 from estimator.session import Array
 
 Place = tuple[str, tuple[int, ...]]
@@ -72,6 +73,8 @@ class Term:
     """(q,) μ; None where it is zero."""
     effect: CauseEffect | None = None
     course: UnknownCourse | None = None
+    log_place: float = 0.0
+    """ln of the posterior odds of all shapes and sizes at its place over its own, where it was found."""
 
     @property
     def name(self) -> str:
@@ -92,8 +95,16 @@ class PlaceCandidate:
     """ln posterior odds of the likeliest term alone."""
     named: bool
     """Whether it is a cause of the catalogue."""
-    term: Callable[[], Term]
-    """Makes the likeliest term."""
+    make: Callable[[], Term]
+    """Makes the likeliest term by itself."""
+
+    def term(self) -> Term:
+        """The likeliest term."""
+        return replace(self.make(), log_place=self.value - self.best)
+
+    def beside_others(self) -> "PlaceCandidate":
+        """The candidate where something else is known to have happened in the same session."""
+        return replace(self, value=self.value + FURTHER, best=self.best + FURTHER)
 
 
 class Kind(ABC):

@@ -56,40 +56,41 @@ class FreeCourse:
 
     @classmethod
     def of_products(cls, gram: Array, along: Array) -> "FreeCourse":
-        """The course of the products ``gram`` (m, w, m, w) and ``along`` (m, w) of every sensor's waves."""
-        m, w = along.shape
+        """The course of the products ``gram`` (m, w, m, w) and ``along`` (m, w) of every sensor's waves.
+
+        All sizes g are climbed at once, one row of each array.
+        """
+        (m, w), g = along.shape, SIZES[:, None]
         apart = np.linalg.solve(gram.reshape(m * w, m * w) + RIDGE * np.eye(m * w), along.ravel()).reshape(m, w)
         left, size, right = np.linalg.svd(apart, full_matrices=False)
-        start = right[0] * np.sqrt(w), left[:, 0] * size[0] / np.sqrt(w)
-        return max((cls._at(gram, along, g, start) for g in SIZES), key=_evidence)
-
-    @classmethod
-    def _at(cls, gram: Array, along: Array, g: float, start: tuple[Array, Array]) -> "FreeCourse":
-        """The likeliest at one g; ``gram`` (m, w, m, w) and ``along`` (m, w)."""
-        (v, beta), (m, w) = start, along.shape
+        v = np.tile(right[0] * np.sqrt(w), (len(g), 1))
+        beta = np.tile(left[:, 0] * size[0] / np.sqrt(w), (len(g), 1))
         for _ in range(TURNS):
-            beta = np.linalg.solve(of_sizes(gram, v) + np.eye(m) / g, along @ v)
-            v = np.linalg.solve(of_waves(gram, beta) + np.eye(w), beta @ along)
-        c = np.outer(beta, v)
-        explained = float((along * c).sum() - 0.5 * (c * np.tensordot(gram, c, 2)).sum())
-        both = np.einsum("ijkl,j,k->il", gram, v, beta)
-        joint = np.block([[g * of_sizes(gram, v), np.sqrt(g) * both], [np.sqrt(g) * both.T, of_waves(gram, beta)]])
-        whole = float(np.linalg.slogdet(np.eye(m + w) + joint)[1])
-        given = float(np.linalg.slogdet(np.eye(m) + g * of_sizes(gram, v))[1])
-        prior = 0.5 * float(v @ v)
-        value = explained - prior - 0.5 * float(beta @ beta) / g - 0.5 * whole
-        return cls(v, beta, value, float(np.exp(min(prior + 0.5 * (whole - given), MOST))))
+            beta = np.linalg.solve(of_sizes(gram, v) + np.eye(m) / g[..., None], (v @ along.T)[..., None])[..., 0]
+            v = np.linalg.solve(of_waves(gram, beta) + np.eye(w), (beta @ along)[..., None])[..., 0]
+        sizes, waves, both = of_sizes(gram, v), of_waves(gram, beta), of_both(gram, v, beta)
+        fits = np.einsum("gi,ga,ia->g", beta, v, along) - 0.5 * np.einsum("gi,gij,gj->g", beta, sizes, beta)
+        root = np.sqrt(g)[..., None]
+        joint = np.block([[root**2 * sizes, root * both], [root * both.swapaxes(1, 2), waves]])
+        whole = np.linalg.slogdet(np.eye(m + w) + joint)[1]
+        given = np.linalg.slogdet(np.eye(m) + root**2 * sizes)[1]
+        prior = 0.5 * (v**2).sum(axis=1)
+        value = fits - prior - 0.5 * (beta**2 / g).sum(axis=1) - 0.5 * whole
+        best = int(np.argmax(value))
+        tried = float(np.exp(min(prior[best] + 0.5 * (whole - given)[best], MOST)))
+        return cls(v[best], beta[best], float(value[best]), tried)
 
 
 def of_sizes(gram: Array, v: Array) -> Array:
-    """(m, m) information of the sizes given the waves v (w,), of ``gram`` (m, w, m, w)."""
-    return np.asarray(np.tensordot(np.tensordot(gram, v, (3, 0)), v, (1, 0)))
+    """(G, m, m) information of the sizes given the waves v (G, w), of ``gram`` (m, w, m, w)."""
+    return np.asarray((np.tensordot(v, gram, (1, 1)) @ v[:, None, :, None])[..., 0])
 
 
 def of_waves(gram: Array, beta: Array) -> Array:
-    """(w, w) information of the waves given the sizes β (m,)."""
-    return np.asarray(np.tensordot(beta, np.tensordot(gram, beta, (2, 0)), (0, 0)))
+    """(G, w, w) information of the waves given the sizes β (G, m)."""
+    return np.asarray((np.tensordot(beta, gram, (1, 0)).swapaxes(2, 3) @ beta[:, None, :, None])[..., 0])
 
 
-def _evidence(course: FreeCourse) -> float:
-    return course.log_evidence
+def of_both(gram: Array, v: Array, beta: Array) -> Array:
+    """(G, m, w) information that sizes and waves have in common."""
+    return np.asarray((np.tensordot(v, gram, (1, 1)).swapaxes(2, 3) @ beta[:, None, :, None])[..., 0])
