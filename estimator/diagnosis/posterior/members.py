@@ -24,7 +24,7 @@ def log_sets(m: int) -> Array:
 
 def each_alone(along: Array, square: Array) -> Array:
     """(L, …) ln B of single columns at every size, from W'a and W'AW (…), as if none overlapped."""
-    g = SIZES.reshape(-1, *(1,) * along.ndim) ** 2
+    g, square = SIZES.reshape(-1, *(1,) * along.ndim) ** 2, np.maximum(square, 0.0)
     return np.asarray(0.5 * g * along**2 / (1 + g * square) - 0.5 * np.log1p(g * square))
 
 

@@ -132,7 +132,7 @@ def one(
     columns = columns_of(session, effect, sensors)
     beside = np.zeros((*columns.shape[:2], W.shape[1] - len(scale)))
     gram, along = W.T @ info.A @ W, W.T @ info.a
-    statistic = float(along @ np.linalg.pinv(gram, hermitian=True, rcond=1e-9) @ along)
+    statistic = max(float(along @ np.linalg.pinv(gram, hermitian=True, rcond=1e-9) @ along), 0.0)
     trace = session.T @ W / np.concatenate([scale, np.ones(beside.shape[-1])])
     shape = Shape(sensors, np.concatenate([columns, beside], axis=-1), effect.nonlinear)
     q = W.shape[1]
