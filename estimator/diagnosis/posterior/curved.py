@@ -3,13 +3,12 @@
 The effect is taken out before the fit and put back into the residuals, as what it is (Gauss–Newton).
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from estimator.diagnosis.posterior.information import InputInformation
-from estimator.diagnosis.posterior.search import Remainder
 from estimator.diagnosis.posterior.term import MOVED, NOISE, Term
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import baseline_of, readings_without
@@ -17,6 +16,8 @@ from estimator.diagnosis.residuals.flipped_run import with_fitted_flip
 from estimator.diagnosis.residuals.refitted import refitted
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.session import Array
+
+ResidualsOf = Callable[[Baseline], WhitenedResiduals]
 
 CURVED = 0.02
 """Standard errors of a reading that the second order of an effect may come to: less hides in the noise of hundreds."""
@@ -27,14 +28,17 @@ LARGEST = 0.3
 parameters."""
 
 WORSE = 2.0
-"""Largest ratio of the χ² left at which a refit is still the same minimum: else the effect is too large to be taken out
-of a session that hardly observes what it resembles."""
+"""Largest ratio of χ² at which a refit is still the same minimum: a session that hardly observes what an effect
+resembles has others."""
 
 
-def about_effects(baseline: Baseline, start: InputInformation, found: Remainder) -> Baseline | None:
-    """The baseline fitted about what the terms found make of the readings; None where that is as good as linear, or
-    what it was fitted about already. ``start``: the information with nothing found."""
-    effect = made_of_readings(start, found.terms)[: baseline.residual.size].reshape(baseline.residual.shape)
+def about_effects(
+    baseline: Baseline, start: InputInformation, terms: Sequence[Term], residuals_of: ResidualsOf
+) -> Baseline | None:
+    """The baseline fitted about what terms make of the readings; None where that is as good as linear, or
+    what it was fitted about already. ``start``: the information with nothing found;
+    ``residuals_of``: the residuals of a baseline, with its change since the history."""
+    effect = made_of_readings(start, terms)[: baseline.residual.size].reshape(baseline.residual.shape)
     new = effect if baseline.course is None else effect - baseline.course
     share = np.abs(effect / baseline.setting.norm).max()
     if share > LARGEST or share * np.abs(new / np.sqrt(baseline.variance)).max() < CURVED:
@@ -53,8 +57,12 @@ def about_effects(baseline: Baseline, start: InputInformation, found: Remainder)
             course=effect,
         )
     )
-    left = WhitenedResiduals.of(replace(about, residual=about.residual - effect)).z
-    return about if left @ left < WORSE * max(found.info.energy, found.info.freedom) else None
+    return about if energy(residuals_of(about)) < WORSE * energy(residuals_of(baseline)) else None
+
+
+def energy(residuals: WhitenedResiduals) -> float:
+    """χ² with nothing found, the history's part in it."""
+    return float(residuals.z @ residuals.z)
 
 
 def made_of_readings(start: InputInformation, terms: Sequence[Term]) -> Array:

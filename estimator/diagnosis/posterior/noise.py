@@ -44,8 +44,9 @@ def columns_of(baseline: Baseline, terms: Sequence[Term]) -> Array | None:
 
 
 def unlike_noise(baseline: Baseline, terms: Sequence[Term]) -> list[Term]:
-    """The terms that noise of another law cannot be taken for: those of fewer columns than there are rows."""
-    return [t for t in terms if t.columns.shape[1] < len(baseline.variance)]
+    """The terms that noise of another law cannot be taken for: those of fewer columns a sensor than there are rows."""
+    rows = len(baseline.variance)
+    return [t for t in terms if t.columns.shape[1] < rows * max(len(t.sensors), 1)]
 
 
 def of_quiet_sensors(baseline: Baseline) -> Baseline:

@@ -48,8 +48,8 @@ OWN_COURSE = 0.05
 COMMON_COURSE = 0.03
 """Prior odds that the applied vector has one."""
 
-NOISY = 0.03
-"""Prior odds that some sensor is noisier than stated."""
+NOISY = 0.05
+"""Prior odds that some sensor is noisier than stated: as often as one has a course."""
 
 UNLIKE = 0.3
 """Prior odds that a sensor whose noise is not stated is noisier than usual of its kind."""
@@ -66,8 +66,9 @@ SPREADS = 2.0 ** np.arange(-2, 8)
 MOVED = 0.01
 """Prior odds that some sensor's parameters changed since the history in a way that no drift describes."""
 
-NOISE_RATIOS = np.array([0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0])
-"""Variance of a noisy sensor beyond the stated one, in units of it."""
+NOISE_RATIOS = 2.0 ** np.arange(-1, 11)
+"""Variance of a noisy sensor beyond the stated one, in units of it: up to thirty times the standard error, beyond which
+readings are no noise."""
 
 CREDIBLE = 0.995
 """Probability that a name and its alternatives hold together."""

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from functools import partial
 
 from estimator.diagnosis.posterior.information import InputInformation
 from estimator.diagnosis.posterior.priors import FURTHER, MOST
@@ -11,7 +10,7 @@ from estimator.diagnosis.posterior.term import Kind, PlaceCandidate, Term
 GAIN = 0.1
 """ln posterior that a change must gain: less decides nothing."""
 
-FEW = 3
+FEW = 2
 """Causes that are tried together before anything else: what takes more is rarely said by names alone."""
 
 
@@ -86,13 +85,10 @@ def search(model: TermModel) -> tuple[Term, ...]:
     whole = climbed(model, model.kinds)
     if all(term.named and len(term.sensors) < 2 for term in whole):
         return whole
-    best = model.beside(whole).log_posterior - HOPELESS
-    rival = grown(model, model.of_causes, (), FEW)
-    for climb in (partial(grown, most=MOST), climbed):
-        if model.beside(rival).log_posterior < best:
-            return whole
-        rival = climb(model, model.kinds, rival)
-    return max((whole, rival), key=lambda terms: model.beside(terms).log_posterior)
+    rival = grown(model, model.kinds, grown(model, model.of_causes, (), FEW), MOST)
+    if model.beside(rival).log_posterior < model.beside(whole).log_posterior - HOPELESS:
+        return whole
+    return max((whole, climbed(model, model.kinds, rival)), key=lambda terms: model.beside(terms).log_posterior)
 
 
 def climbed(model: TermModel, kinds: Sequence[Kind], start: Sequence[Term] = ()) -> tuple[Term, ...]:

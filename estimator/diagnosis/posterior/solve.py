@@ -1,6 +1,6 @@
 """The likeliest terms of a session, in the noise that is likeliest with them."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
@@ -10,7 +10,7 @@ from scipy.special import logsumexp
 from estimator.causes.contract import Signature
 from estimator.diagnosis.posterior.applied_courses import AppliedCourses
 from estimator.diagnosis.posterior.common_causes import CommonCauses
-from estimator.diagnosis.posterior.curved import about_effects
+from estimator.diagnosis.posterior.curved import ResidualsOf, about_effects
 from estimator.diagnosis.posterior.free_shared import FreeShared
 from estimator.diagnosis.posterior.information import InputInformation
 from estimator.diagnosis.posterior.moved_parameters import MovedParameters
@@ -36,8 +36,6 @@ from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.likelihood import log_likelihood_ratio
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.session import Array
-
-ResidualsOf = Callable[[Baseline], WhitenedResiduals]
 
 SEARCHES = 3
 """Searches at most, each in the noise that the terms of the one before leave."""
@@ -176,7 +174,7 @@ def solved_in(
             quieter = beside(baseline, columns_of(baseline, solution.terms))
         if quieter is not None and is_alike(quieter, baseline):
             quieter = None
-        curved = about_effects(quieter or baseline, session.model.start, solution.here)
+        curved = about_effects(quieter or baseline, session.model.start, solution.terms, residuals_of)
         if quieter is None and curved is None:
             break
         baseline = curved or quieter or baseline
