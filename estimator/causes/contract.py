@@ -233,8 +233,6 @@ class Cause(ABC):
 class Signature(Cause):
     """A cause whose effect is a linear combination of known columns."""
 
-    nameless: ClassVar[bool] = False
-    """Whether it is a mere pattern that is no cause: it lives within one session and has no history."""
     bounded: ClassVar[bool] = False
     """Whether `plausible` restricts the amplitude."""
 
@@ -263,15 +261,8 @@ class Signature(Cause):
         """Shapes beside one of the grid, to find the best nonlinear parameters between its points."""
         yield from ()
 
-    def derivative(self, setting: Setting, shape: Shape) -> Array:
-        """(R, m, r) change of the columns, m/s² (rad/s), per unit of each continuous nonlinear parameter.
-
-        The parameter's own error belongs to the amplitude's sigma.
-        """
-        return np.zeros((*shape.columns.shape[:2], 0))
-
-    def left(self, setting: Setting, shape: Shape) -> float:
-        """Share of the amplitude that is there at the first row, dimensionless."""
+    def left(self, setting: Setting, nonlinear: tuple[float, ...]) -> float:
+        """Share of the amplitude that is there at the first row, dimensionless, in a shape."""
         return 1.0
 
     def reported(self, setting: Setting, shape: Shape, amplitude: Array, sigma: Array) -> tuple[Array, Array]:

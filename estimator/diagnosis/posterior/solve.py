@@ -1,7 +1,7 @@
 """The likeliest terms of a session, in the noise that is likeliest with them."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -64,12 +64,18 @@ class SessionTerms:
     @classmethod
     def of(cls, residuals: WhitenedResiduals, catalogue: Sequence[Signature]) -> "SessionTerms":
         """The kinds of a catalogue's causes, and those of everything else."""
+        causes = cls.of_causes(residuals, catalogue)
+        makers = (OwnCourses, NoisySensors, AppliedCourses, WanderingZeros, MovedParameters)
+        return replace(causes, model=replace(causes.model, of_courses=tuple(make(residuals) for make in makers)))
+
+    @classmethod
+    def of_causes(cls, residuals: WhitenedResiduals, catalogue: Sequence[Signature]) -> "SessionTerms":
+        """The kinds of a catalogue's causes alone."""
         start, T = InputInformation.of(residuals)
         single = SensorCauses(residuals, catalogue)
         shared = SharedCauses(single)
-        of_causes = (single, CommonCauses(residuals, catalogue), shared, FreeShared(residuals))
-        makers = (OwnCourses, NoisySensors, AppliedCourses, WanderingZeros, MovedParameters)
-        return cls(residuals, T, single, shared, TermModel(start, of_causes, tuple(make(residuals) for make in makers)))
+        kinds = (single, CommonCauses(residuals, catalogue), shared, FreeShared(residuals))
+        return cls(residuals, T, single, shared, TermModel(start, kinds, ()))
 
 
 @dataclass(frozen=True, eq=False)
