@@ -24,7 +24,7 @@ class OwnChange(Signature):
     equation = ""
     units = ()
     sentence = "the sensor's parameters, changed since the earlier sessions"
-    advice = "Look at the residuals there; no known cause has this pattern."
+    advice = ""
 
     moves = ([0, 1, 3, 4], [2], [0, 1, 2, 3, 4])
     """Scale, bias and axis; the quadratic term alone; everything. Of the first three one alone is no cheaper than a
