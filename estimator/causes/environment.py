@@ -241,7 +241,6 @@ class BiasJump(GridCause):
     units = ("m/s²",)
     nonlinear_units = ("row",)
     shape_words = "from"
-    repeats = 2
     sentence = "The bias of {sensors} has one step."
     advice = "Find out what happened then: a shock, a change of supply, a particle in the sensor. Repeat the session."
     shared_sentence = "The biases of {sensors} have one step at the same moment."
