@@ -7,14 +7,15 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from benchmarks.blind.folder import SESSION
+from benchmarks.study.signatures import Signatures
 from estimator import CalibrationSession, calibrate, read_session
 from estimator.causes.catalogue import CATALOGUE
 from estimator.diagnosis.diagnose import PutRight, initial_state, put_right
 from estimator.diagnosis.explanation.record_findings import clip_findings, entry_finding, record_error_finding
+from estimator.diagnosis.posterior.explained import ExplainedSession
 from estimator.diagnosis.record.nominal import WrongEntry, wrong_entry
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.results import Finding
-from estimator.diagnosis.selection.search_state import SearchState
 
 SAID = ("cause", "sensors", "amplitude", "sigma", "alternatives")
 """Fields of a finding that an answer holds."""
@@ -52,12 +53,17 @@ class Given:
         return None if self.history else wrong_entry(self.right.right.session, CATALOGUE)
 
     @cached_property
-    def state(self) -> SearchState:
-        """Residuals and signatures of the session put right, nothing sought in them yet."""
+    def state(self) -> ExplainedSession:
+        """Residuals of the session put right, nothing sought in them yet."""
         baseline = (
             self.right.right if self.entry is None else baseline_of(self.entry.corrected(self.right.right.session))
         )
         return initial_state(baseline, self.right.earlier, CATALOGUE)
+
+    @cached_property
+    def signatures(self) -> Signatures:
+        """All signatures in these residuals."""
+        return Signatures.of(self.state)
 
     def of_record(self) -> Iterator[Finding]:
         """Findings about the record, which was corrected."""

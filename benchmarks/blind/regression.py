@@ -6,7 +6,7 @@ import numpy as np
 
 from benchmarks.blind.given import Claim, Given
 from benchmarks.study.detection import CUTS, RIDGE
-from estimator.diagnosis.signatures.traces import Traces
+from benchmarks.study.signatures import Traces
 from estimator.session import Array
 
 FEWER = CUTS[CUTS > 0.3][::-2]
@@ -16,9 +16,8 @@ FEWER = CUTS[CUTS > 0.3][::-2]
 def sparse(given: Given) -> list[Claim]:
     """Each cause on its sensor, with the largest threshold at which a term of it stays; the cut is where it is set."""
     state, found = given.state, dict[tuple[str, int], float]()
-    terms = [term for traces in state.traces for term in _terms(traces)]
-    library = np.concatenate([t.columns.swapaxes(0, 1).reshape(len(state.residuals.z), -1) for t in state.traces], 1)
-    for cut, kept in kept_terms(library, state.residuals.z):
+    terms = [term for traces in given.signatures.each for term in _terms(traces)]
+    for cut, kept in kept_terms(given.signatures.library, state.residuals.z):
         for k in kept:
             found.setdefault(terms[k], cut)
     return [
@@ -29,8 +28,8 @@ def sparse(given: Given) -> list[Claim]:
 
 def _terms(traces: Traces) -> Iterator[tuple[str, int]]:
     """The cause and its sensor, −1 for none, of every column, shape by shape."""
-    for sensor in traces.sensor:
-        yield from [(traces.cause.identifier, int(sensor))] * traces.columns.shape[-1]
+    for shape in traces.shapes:
+        yield from [(traces.cause.identifier, next(iter(shape.sensors), -1))] * traces.columns.shape[-1]
 
 
 def kept_terms(library: Array, z: Array) -> Iterator[tuple[float, Array]]:

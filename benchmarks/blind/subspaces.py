@@ -16,16 +16,17 @@ import numpy as np
 from scipy.special import chdtrc, gammaln, logsumexp
 
 from benchmarks.blind.given import Claim, Given
-from benchmarks.study.detection import causes_of, energy, log_likelihood_ratio, places
+from benchmarks.study.detection import energy, log_likelihood_ratio
 from benchmarks.study.examine import SHARES
+from benchmarks.study.signatures import Signatures, SignatureScores
 from estimator.causes.environment import BiasJump
 from estimator.diagnosis.explanation.extended_model import amplitudes
 from estimator.diagnosis.explanation.rivals import CREDIBLE
+from estimator.diagnosis.posterior.explained import Detection, ExplainedSession, Scored, begin
+from estimator.diagnosis.posterior.term import Place
 from estimator.diagnosis.residuals.fitted import baseline_of
-from estimator.diagnosis.selection.search_state import Detection, SearchState
-from estimator.diagnosis.selection.start import begin, remaining_of_sensors
-from estimator.diagnosis.signatures.scores import Scores, scores
-from estimator.diagnosis.signatures.traces import Group, Scored
+from estimator.diagnosis.residuals.remaining import remaining_of_sensors
+from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.session import Array
 from tests.blind.cases import FAINTEST, STRONGEST, WEAKEST
 
@@ -40,47 +41,47 @@ NOISE = "excess-noise"
 """A cause without a signature: a variance."""
 UNDERFLOW = 1e-250
 
-Choice = Callable[[SearchState], tuple[Claim, Scored | None] | None]
+Choice = Callable[[Signatures, ExplainedSession], tuple[Claim, Scored | None] | None]
 """The likeliest name, and what is to be taken out before the second look; None where there is none."""
 
 
 def matched(given: Given) -> list[Claim]:
     """Matched subspaces of the whole catalogue."""
-    return list(_in_turn(given.state, _best_matched))
+    return list(_in_turn(given.signatures, given.state, _best_matched))
 
 
 def one_step(given: Given) -> list[Claim]:
     """A generalised likelihood ratio (Willsky and Jones 1976): a step of one sensor at any row of the session as filed;
     what all sensors of a row share counts as the stand's, as in parity space."""
-    cause = BiasJump()
-    return list(_in_turn(begin(baseline_of(given.right.rows), (), [cause], []), _best_matched))[:1]
+    state = begin(baseline_of(given.right.rows), (), [BiasJump()])
+    return list(_in_turn(Signatures.of(state), state, _best_matched))[:1]
 
 
 def chi_square(given: Given) -> list[Claim]:
     """χ² of the residuals of the session as filed: no signature is looked for."""
-    return [Claim(energy(begin(baseline_of(given.right.rows), (), [], [])), None)]
+    return [Claim(energy(WhitenedResiduals.of(baseline_of(given.right.rows))), None)]
 
 
 def bayes(given: Given) -> list[Claim]:
     """The posterior under the generator's prior."""
-    return list(_in_turn(given.state, _likeliest))
+    return list(_in_turn(given.signatures, given.state, _likeliest))
 
 
 def given_cause(given: Given) -> list[Claim]:
     """The best of each cause, for somebody who knows which one acts, the surest first; noise, by each sensor's χ²."""
     state = given.state
-    seen = scores(state.residuals, state.traces, state.attributed())
-    sure, cause = surprise(state, seen), causes_of(state, seen)
+    seen = given.signatures.scores(state.attributed())
+    sure, cause = surprise(given.signatures, seen), seen.cause
     best = [np.flatnonzero(cause == c) for c in dict.fromkeys(cause)]
     chosen = [int(k[np.argmax(sure[k])]) for k in best]
     claims = [Claim(float(sure[k]), finding(_beside(state, seen.scored(k)))) for k in chosen]
-    return sorted([*claims, *_noisiest(state)], key=lambda claim: -claim.statistic)
+    return sorted([*claims, *_noisiest(given.signatures, state)], key=lambda claim: -claim.statistic)
 
 
-def _in_turn(state: SearchState, choose: Choice) -> Iterator[Claim]:
+def _in_turn(known: Signatures, state: ExplainedSession, choose: Choice) -> Iterator[Claim]:
     """The first name, and the second in what the first leaves."""
     for _ in range(NAMES):
-        found = choose(state)
+        found = choose(known, state)
         if found is None:
             return
         yield found[0]
@@ -89,12 +90,12 @@ def _in_turn(state: SearchState, choose: Choice) -> Iterator[Claim]:
         state = _beside(state, found[1])
 
 
-def _beside(state: SearchState, best: Scored) -> SearchState:
+def _beside(state: ExplainedSession, best: Scored) -> ExplainedSession:
     """The search with one more signature found."""
-    return replace(state, detections=(*state.detections, Detection(best, best.p_value, ((best, best.log_evidence),))))
+    return replace(state, detections=(*state.detections, Detection(best, best.p_value, ())))
 
 
-def finding(state: SearchState, alternatives: tuple[str, ...] = ()) -> dict[str, object]:
+def finding(state: ExplainedSession, alternatives: tuple[str, ...] = ()) -> dict[str, object]:
     """The latest of the signatures found, as an answer holds it."""
     fitted, best = amplitudes(state), state.detections[-1].best
     place = slice(fitted.slices[-1].start, fitted.slices[-1].start + len(best.cause.units))
@@ -109,10 +110,9 @@ def finding(state: SearchState, alternatives: tuple[str, ...] = ()) -> dict[str,
     }
 
 
-def surprise(state: SearchState, seen: Scores) -> Array:
+def surprise(known: Signatures, seen: SignatureScores) -> Array:
     """(k,) −ln p of every shape, the choice among causes and among the places of its own included."""
-    counted = places(state)
-    many = np.array([state.families * counted[c] for c in causes_of(state, seen)])
+    many = np.array([known.families * known.places[c] for c in seen.cause])
     return -log_tail(seen.statistic, seen.freedom) - np.log(many)
 
 
@@ -123,19 +123,19 @@ def log_tail(statistic: Array, freedom: Array) -> Array:
     return np.where(freedom > 0, np.where(p > UNDERFLOW, np.log(np.maximum(p, UNDERFLOW)), far), 0.0)
 
 
-def _best_matched(state: SearchState) -> tuple[Claim, Scored] | None:
-    seen = scores(state.residuals, state.traces, state.attributed())
+def _best_matched(known: Signatures, state: ExplainedSession) -> tuple[Claim, Scored] | None:
+    seen = known.scores(state.attributed())
     if not len(seen.cause):
         return None
-    sure = surprise(state, seen)
+    sure = surprise(known, seen)
     best = seen.scored(int(np.argmax(sure)))
     return Claim(float(sure.max()), finding(_beside(state, best))), best
 
 
-def _likeliest(state: SearchState) -> tuple[Claim, Scored | None] | None:
+def _likeliest(known: Signatures, state: ExplainedSession) -> tuple[Claim, Scored | None] | None:
     """The cause and sensors of most posterior, the other causes as alternatives until all hold `CREDIBLE` together."""
-    seen = scores(state.residuals, state.traces, state.attributed())
-    groups = {**_weighed(state, seen), **_noisier(state)}
+    seen = known.scores(state.attributed())
+    groups = {**_weighed(known, seen), **_noisier(state)}
     if not groups:
         return None
     causes = len({cause for cause, _ in groups})
@@ -151,11 +151,11 @@ def _likeliest(state: SearchState) -> tuple[Claim, Scored | None] | None:
     return Claim(statistic, finding(_beside(state, seen.scored(k)), others)), seen.scored(k)
 
 
-def _weighed(state: SearchState, seen: Scores) -> dict[Group, tuple[float, int | None]]:
+def _weighed(known: Signatures, seen: SignatureScores) -> dict[Place, tuple[float, int | None]]:
     """ln Λ of every cause on its sensors, averaged over strengths and places, and the likeliest shape."""
     each = np.stack([log_likelihood_ratio(seen.statistic, seen.freedom, s) for s in STRENGTHS])
-    ratio, counted = logsumexp(each, axis=0, b=OF_STRENGTH[:, None]), places(state)
-    members: dict[Group, list[int]] = {}
+    ratio, counted = logsumexp(each, axis=0, b=OF_STRENGTH[:, None]), known.places
+    members: dict[Place, list[int]] = {}
     for k in range(len(ratio)):
         members.setdefault(seen.group(k), []).append(k)
     return {
@@ -164,7 +164,7 @@ def _weighed(state: SearchState, seen: Scores) -> dict[Group, tuple[float, int |
     }
 
 
-def _noisier(state: SearchState) -> dict[Group, tuple[float, int | None]]:
+def _noisier(state: ExplainedSession) -> dict[Place, tuple[float, int | None]]:
     """ln Λ of each sensor's noise being larger than stated, averaged over factors and sensors."""
     square, freedom = _left_of_sensors(state)
     ratio = 0.5 * np.outer(square, 1 - NOISIER**-2.0) - np.outer(freedom, np.log(NOISIER))
@@ -172,21 +172,21 @@ def _noisier(state: SearchState) -> dict[Group, tuple[float, int | None]]:
     return {(NOISE, (i,)): (float(mean[i]), None) for i in _stated(state)}
 
 
-def _noisiest(state: SearchState) -> Iterator[Claim]:
+def _noisiest(known: Signatures, state: ExplainedSession) -> Iterator[Claim]:
     """The sensor whose residuals lie farthest beyond its stated noise, if any states it."""
     square, freedom = _left_of_sensors(state)
-    sure = -log_tail(square, freedom) - np.log(state.families * len(square))
-    if known := _stated(state):
-        i = max(known, key=lambda k: sure[k])
+    sure = -log_tail(square, freedom) - np.log(known.families * len(square))
+    if stated := _stated(state):
+        i = max(stated, key=lambda k: sure[k])
         yield Claim(float(sure[i]), {"cause": NOISE, "sensors": [state.names[i]]})
 
 
-def _left_of_sensors(state: SearchState) -> tuple[Array, Array]:
+def _left_of_sensors(state: ExplainedSession) -> tuple[Array, Array]:
     """(m,) energy, dimensionless, and (m,) degrees of freedom that what was found leaves of every sensor."""
     found = [f.best.shape.columns for f in state.detections]
     return remaining_of_sensors(state.residuals, np.concatenate(found, axis=-1) if found else None)
 
 
-def _stated(state: SearchState) -> list[int]:
+def _stated(state: ExplainedSession) -> list[int]:
     """Sensors whose noise the file states."""
     return [int(i) for i in np.flatnonzero(~state.baseline.unstated)]

@@ -39,11 +39,11 @@ from benchmarks.study.kept import BUILD
 from benchmarks.study.neural.network import Answer, answer, weights
 from benchmarks.study.rates import rate
 from benchmarks.study.report import table
+from benchmarks.study.signatures import Signatures, SignatureScores
 from estimator import diagnose, read_session
 from estimator.causes.catalogue import CATALOGUE as KNOWN
 from estimator.diagnosis.diagnose import initial_state, put_right
-from estimator.diagnosis.selection.search_state import SearchState
-from estimator.diagnosis.signatures.scores import Scores, scores
+from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.session import Array
 from tests.blind.case import Case
 from tests.blind.cases import draw_at, draw_case
@@ -119,47 +119,33 @@ def perform(task: Task, network: Path | None = None) -> Look | None:
     session = read_session(case.session)
     state = initial_state(put_right(session, (), KNOWN).right, (), KNOWN)
     found = diagnose(session).to_dict()
-    seen = scores(state.residuals, state.traces, state.attributed())
-    p_values = family_p_values(state, seen)
+    known = Signatures.of(state)
+    seen = known.scores(state.attributed())
+    p_values = family_p_values(known, seen)
     return Look(
         task.cause,
         task.strength,
         bool(found["findings"]),
         bool(case.truths) and score(case, found, 0.0).listed,
         {cause: -float(np.log(p)) for cause, p in p_values.items()},
-        -float(np.log(min(p_values.values(), default=1.0) * state.families)),
-        {s: likelihood_ratio(state, seen, s) for s in STRENGTHS},
-        sparse_threshold(state),
-        energy(state),
+        -float(np.log(min(p_values.values(), default=1.0) * known.families)),
+        {s: likelihood_ratio(known, seen, s) for s in STRENGTHS},
+        sparse_threshold(known),
+        energy(state.residuals),
         answer(network, state.residuals) if network else None,
     )
 
 
-def places(state: SearchState) -> dict[str, int]:
-    """Number of visible shapes of each cause."""
-    counted: dict[str, int] = {}
-    for traces in state.traces:
-        counted[traces.cause.identifier] = counted.get(traces.cause.identifier, 0) + max(traces.places, 1)
-    return counted
-
-
-def causes_of(state: SearchState, seen: Scores) -> Array:
-    """(k,) str, the cause of every scored shape."""
-    return np.array([state.traces[c].cause.identifier for c in seen.cause], dtype=object)
-
-
-def family_p_values(state: SearchState, seen: Scores) -> dict[str, float]:
+def family_p_values(known: Signatures, seen: SignatureScores) -> dict[str, float]:
     """Family-wise p-value of each cause: the least p-value of its shapes, times their number."""
-    cause, counted = causes_of(state, seen), places(state)
-    least = {c: float(seen.p_value[cause == c].min(initial=1.0)) for c in counted}
-    return {c: max(min(p * counted[c], 1.0), 1e-300) for c, p in least.items()}
+    least = {c: float(seen.p_value[seen.cause == c].min(initial=1.0)) for c in known.places}
+    return {c: max(min(p * known.places[c], 1.0), 1e-300) for c, p in least.items()}
 
 
-def likelihood_ratio(state: SearchState, seen: Scores, strength: float) -> float:
+def likelihood_ratio(known: Signatures, seen: SignatureScores, strength: float) -> float:
     """ln Λ averaged over causes, and over the shapes of each."""
-    cause, counted = causes_of(state, seen), places(state)
     ratio = log_likelihood_ratio(seen.statistic, seen.freedom, strength)
-    each = [float(logsumexp(ratio[cause == c])) - np.log(n) for c, n in counted.items() if (cause == c).any()]
+    each = [float(logsumexp(ratio[seen.cause == c])) - np.log(n) for c, n in known.places.items()]
     return float(logsumexp(each)) - np.log(len(each)) if each else NEVER
 
 
@@ -170,12 +156,12 @@ def log_likelihood_ratio(statistic: Array, freedom: Array, strength: float) -> A
     return np.where(freedom > 0, gammaln(order + 1) + order * np.log(2 / x) + bessel - strength**2 / 2, NEVER)
 
 
-def sparse_threshold(state: SearchState) -> float:
+def sparse_threshold(known: Signatures) -> float:
     """Sequentially thresholded least squares (Brunton et al. 2016, appendix B) over all shapes at once."""
-    library = np.concatenate([t.columns.swapaxes(0, 1).reshape(len(state.residuals.z), -1) for t in state.traces], 1)
+    library = known.library
     norms = np.linalg.norm(library, axis=0)
     library = library[:, norms > 0] / norms[norms > 0]
-    return max((cut for cut in CUTS if _kept(library, state.residuals.z, cut)), default=0.0)
+    return max((cut for cut in CUTS if _kept(library, known.residuals.z, cut)), default=0.0)
 
 
 def _kept(library: Array, z: Array, cut: float) -> bool:
@@ -191,9 +177,9 @@ def _kept(library: Array, z: Array, cut: float) -> bool:
     return False
 
 
-def energy(state: SearchState) -> float:
+def energy(residuals: WhitenedResiduals) -> float:
     """Excess of the residuals' χ² over its mean, in standard deviations."""
-    z, freedom = state.residuals.z, float(state.residuals.row_freedom.sum())
+    z, freedom = residuals.z, float(residuals.row_freedom.sum())
     return float((z @ z - freedom) / np.sqrt(2 * freedom))
 
 
@@ -244,8 +230,8 @@ def page(looks: list[Look], command: str) -> str:
         "The last line is given the cause that acts, so that it looks for one family of shapes where all others look "
         f"for {len(HIDDEN)}: what lies between it and the limit is the price of not knowing the cause, which nobody "
         "who measures can avoid. What the diagnosis lacks to the limit is the price of what this generator never does: "
-        "errors with tails, beside which a faint name must hold, and effects that no catalogue has, for which it must "
-        "predict readings held out; the limit also knows how strong and how frequent every cause is drawn.\n\n"
+        "errors with tails and effects that no catalogue has, beside which a faint name must hold; the "
+        "limit also knows how strong and how frequent every cause is drawn.\n\n"
         "## At the false alarms of the diagnosis\n\n"
         "Each rival has the threshold that as many of the sound sessions pass as get a name.\n\n"
         f"{table(HEAD, [*ours[:1], *rivals(sound, hidden, named.share)])}\n"

@@ -178,8 +178,6 @@ class Cause(ABC):
     """Kind of sensor it acts on; None for both."""
     between: ClassVar[bool] = False
     """Whether it shows in what changed since the history (or from nominal), not in the session's residuals."""
-    repeats: ClassVar[int] = 1
-    """Most times that it may happen to one sensor in a session; what needs more of them is no such cause."""
     passing: ClassVar[bool] = False
     """Whether it belongs to a single session, so that no model can hold it."""
     lasts: ClassVar[bool] = False
@@ -233,10 +231,8 @@ class Cause(ABC):
 class Signature(Cause):
     """A cause whose effect is a linear combination of known columns."""
 
-    nameless: ClassVar[bool] = False
-    """Whether it is a mere pattern that is no cause: it lives within one session and has no history."""
     bounded: ClassVar[bool] = False
-    """Whether `plausible` restricts the amplitude."""
+    """Whether its amplitude must be one."""
 
     @property
     def can_be_modelled(self) -> bool:
@@ -251,27 +247,12 @@ class Signature(Cause):
         known = (s for s in self.shapes(setting) if (s.sensors, s.nonlinear) == (shape.sensors, shape.nonlinear))
         return next(known).columns
 
-    def all_columns(self, setting: Setting, shapes: Sequence[Shape]) -> Array:
-        """(R, m, S·q) effects of S shapes in another session, m/s² (rad/s) per unit amplitude."""
-        return np.concatenate([self.columns(setting, shape) for shape in shapes], axis=-1)
-
-    def plausible(self, shape: Shape, amplitude: float) -> bool:
-        """Whether the cause can have this amplitude (one amplitude)."""
-        return True
-
     def neighbours(self, setting: Setting, shape: Shape) -> Iterator[Shape]:
         """Shapes beside one of the grid, to find the best nonlinear parameters between its points."""
         yield from ()
 
-    def derivative(self, setting: Setting, shape: Shape) -> Array:
-        """(R, m, r) change of the columns, m/s² (rad/s), per unit of each continuous nonlinear parameter.
-
-        The parameter's own error belongs to the amplitude's sigma.
-        """
-        return np.zeros((*shape.columns.shape[:2], 0))
-
-    def left(self, setting: Setting, shape: Shape) -> float:
-        """Share of the amplitude that is there at the first row, dimensionless."""
+    def left(self, setting: Setting, nonlinear: tuple[float, ...]) -> float:
+        """Share of the amplitude that is there at the first row, dimensionless, in a shape."""
         return 1.0
 
     def reported(self, setting: Setting, shape: Shape, amplitude: Array, sigma: Array) -> tuple[Array, Array]:
@@ -344,11 +325,6 @@ class SensorCause(Signature):
     def columns(self, setting: Setting, shape: Shape) -> Array:
         """(R, m, q) m/s² (rad/s) per unit amplitude."""
         return self.placed(setting, shape.sensors[0], shape.nonlinear)
-
-    def all_columns(self, setting: Setting, shapes: Sequence[Shape]) -> Array:
-        """(R, m, S·q) columns of S shapes, sensor by sensor, m/s² (rad/s) per unit amplitude."""
-        columns = [on_sensor(setting, i, terms) for i, terms in self.terms_of(setting, shapes)]
-        return np.moveaxis(np.concatenate(columns), 0, 2).reshape(setting.rows, len(setting.kinds), -1)
 
 
 class GridCause(SensorCause):

@@ -220,9 +220,9 @@ class WarmUp(GridCause):
         tau = np.array(grid)
         return column(np.where(tau < settled(setting) / 2, 0.0, np.exp(-since_on(setting) / tau)))
 
-    def left(self, setting: Setting, shape: Shape) -> float:
+    def left(self, setting: Setting, nonlinear: tuple[float, ...]) -> float:
         """exp(−t/τ) at the first row after switching on, dimensionless; 1 where nobody knows when that was."""
-        return float(np.exp(-SETTLED * settled(setting) / shape.nonlinear[0]))
+        return float(np.exp(-SETTLED * settled(setting) / nonlinear[0]))
 
     def neighbours(self, setting: Setting, shape: Shape) -> Iterator[Shape]:
         (tau,) = shape.nonlinear
@@ -230,13 +230,6 @@ class WarmUp(GridCause):
             columns = np.zeros_like(shape.columns)
             columns[:, shape.sensors[0], :1] = self.term(setting, shape.sensors[0], (tau * factor,))
             yield Shape(shape.sensors, columns, (float(tau * factor),))
-
-    def derivative(self, setting: Setting, shape: Shape) -> Array:
-        """(R, m, 1) derivative of the columns by ln τ, dimensionless."""
-        (tau,), time = shape.nonlinear, since_on(setting)
-        bent = np.zeros((*shape.columns.shape[:2], 1))
-        bent[:, shape.sensors[0], 0] = np.exp(-time / tau) * time / tau
-        return bent
 
 
 class BiasJump(GridCause):
@@ -248,7 +241,6 @@ class BiasJump(GridCause):
     units = ("m/s²",)
     nonlinear_units = ("row",)
     shape_words = "from"
-    repeats = 2
     sentence = "The bias of {sensors} has one step."
     advice = "Find out what happened then: a shock, a change of supply, a particle in the sensor. Repeat the session."
     shared_sentence = "The biases of {sensors} have one step at the same moment."

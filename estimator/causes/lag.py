@@ -79,9 +79,3 @@ class ThermalLag(SensorCause):
         for factor in np.geomspace(0.6, 1.7, 23):
             near = (float(tau * factor),)
             yield Shape(shape.sensors, self.placed(setting, i, near), near)
-
-    def derivative(self, setting: Setting, shape: Shape) -> Array:
-        """(R, m, 1) derivative of the columns by ln τ, °C."""
-        (i,), (tau,) = shape.sensors, shape.nonlinear
-        above, below = (self.placed(setting, i, (tau * exp(step),)) for step in (STEP, -STEP))
-        return (above - below) / (2 * STEP)

@@ -148,11 +148,6 @@ class Saturation(GridCause):
 
     bounded = True
 
-    def plausible(self, shape: Shape, amplitude: float) -> bool:
-        """One is what clipping has; less where few readings leave the limit open between two levels."""
-        cut = int(np.count_nonzero(shape.columns))
-        return (0.0, 0.0, 0.1, 0.4)[min(cut, 3)] < amplitude < 2.5
-
     def beyond(self, setting: Setting, i: int, side: Array | float) -> tuple[Array, Array]:
         """Size (..., R) of what sensor i should have read on sides (..., 1), at the input, m/s² (rad/s), and its sign
         (R,)."""
@@ -188,7 +183,6 @@ class ReadingOutlier(GridCause):
     units = ("m/s²",)
     nonlinear_units = ("row",)
     shape_words = "at"
-    repeats = 3
     passing = True
     sentence = "{sensors} has one outlying reading."
     advice = "Repeat that position; leave the reading out of the calibration."

@@ -1,9 +1,9 @@
 """Show what the simulation gets wrong, name the cause, extend the model, measure the gain.
 
-record → residuals → signatures → selection → explanation
+record → residuals → posterior → explanation
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from estimator.calibration.calibrate import as_it_came, averaged, calibrate
@@ -25,6 +25,8 @@ from estimator.diagnosis.explanation.record_findings import (
     wrong_record,
 )
 from estimator.diagnosis.explanation.temperature import temperatures, with_temperature
+from estimator.diagnosis.posterior.explained import ExplainedSession, begin
+from estimator.diagnosis.posterior.write import posterior
 from estimator.diagnosis.record.clipping import Clip, earlier_baseline, unclipped
 from estimator.diagnosis.record.common_scale import CommonScale, is_one_place, on_one_scale
 from estimator.diagnosis.record.implausible import ImplausibleAxes, implausible_axes
@@ -37,15 +39,9 @@ from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.common_start import about_their_flips, baselines
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.results import Diagnosis
-from estimator.diagnosis.selection.acceptance import accepted
-from estimator.diagnosis.selection.search_state import SearchState
-from estimator.diagnosis.selection.settling import beside_history, settling, settling_in, with_open_change
-from estimator.diagnosis.selection.start import begin
+from estimator.diagnosis.settling import beside_history, settling, settling_in, with_open_change
 from estimator.diagnosis.turntable import diagnose_alignment
 from estimator.session import ROTATION_ALIGNMENT, CalibrationSession
-
-Search = Callable[[SearchState], SearchState]
-"""A search for the causes of a session: takes the state with nothing found, gives that with the findings."""
 
 
 def diagnose(
@@ -53,7 +49,6 @@ def diagnose(
     history: Sequence[CalibrationSession] = (),
     *,
     catalogue: Sequence[Cause] = CATALOGUE,
-    search: Search = accepted,
 ) -> Diagnosis:
     """Diagnoses a session from its own readings: the effects that the simulation lacks.
 
@@ -64,7 +59,6 @@ def diagnose(
     session : of a programme that calibrates a block; of an alignment on a turntable, where lever arms are looked for.
     history : earlier sessions of the unit, oldest first.
     catalogue : the causes to consider.
-    search : finds causes in a session whose record is right: by rules, or `posterior`, which is to replace them.
 
     Raises
     ------
@@ -72,7 +66,7 @@ def diagnose(
     """
     if session.programme == ROTATION_ALIGNMENT:
         return diagnose_alignment(session)
-    return diagnosed(put_right(session, history, catalogue), catalogue, search)
+    return diagnosed(put_right(session, history, catalogue), catalogue)
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,26 +111,26 @@ def switched_on_like(earlier: CalibrationSession, session: CalibrationSession) -
     return replace(earlier, switched_on=None if since is None else first - since)
 
 
-def diagnosed(session: PutRight, catalogue: Sequence[Cause], search: Search = accepted) -> Diagnosis:
+def diagnosed(session: PutRight, catalogue: Sequence[Cause]) -> Diagnosis:
     """Diagnoses a session whose record is corrected.
 
     What looks like gravity and cannot be is a factor of all sensors: the history is then brought to their scale.
     """
-    found = diagnosed_so(session, catalogue, search)
+    found = diagnosed_so(session, catalogue)
     if not any(map(is_beyond_gravity, found.findings)):
         return found
     scales, earlier = on_one_scale(session.right, session.earlier, tuple(catalogue), least=0.0)
-    return diagnosed_so(replace(session, scales=scales, earlier=earlier), catalogue, search) if scales else found
+    return diagnosed_so(replace(session, scales=scales, earlier=earlier), catalogue) if scales else found
 
 
-def diagnosed_so(session: PutRight, catalogue: Sequence[Cause], search: Search) -> Diagnosis:
+def diagnosed_so(session: PutRight, catalogue: Sequence[Cause]) -> Diagnosis:
     """Diagnoses a session whose record is corrected, with the history as it is."""
     rows, right, earlier = session.rows, session.right, session.earlier
     wrong = impossible_axes(right, earlier, catalogue)
-    state = initial_state(right, earlier, catalogue) if wrong else searched(right, earlier, catalogue, search)
+    state = initial_state(right, earlier, catalogue) if wrong else searched(right, earlier, catalogue)
     entry = None if earlier or wrong else wrong_entry(without_effects(state, amplitudes(state)), catalogue)
     if entry is not None:
-        state = searched(baseline_of(entry.corrected(right.session)), earlier, catalogue, search)
+        state = searched(baseline_of(entry.corrected(right.session)), earlier, catalogue)
     fitted = amplitudes(state)
     new = are_new(state, fitted)
     calibration = extended_calibration(state, fitted)
@@ -172,16 +166,13 @@ def impossible_axes(right: Baseline, history: Sequence[Baseline], catalogue: Seq
     return wrong if entry is None else implausible_axes(baseline_of(entry.corrected(session)), expected)
 
 
-def searched(right: Baseline, history: Sequence[Baseline], catalogue: Sequence[Cause], search: Search) -> SearchState:
+def searched(right: Baseline, history: Sequence[Baseline], catalogue: Sequence[Cause]) -> ExplainedSession:
     """The causes found in a session whose record is right."""
-    return search(initial_state(right, history, catalogue))
+    return posterior(initial_state(right, history, catalogue))
 
 
-def initial_state(right: Baseline, history: Sequence[Baseline], catalogue: Sequence[Cause]) -> SearchState:
-    """The residuals of a session, and nothing sought in them yet.
-
-    A course that sensors share shows within the session: that several have changed since the history is none.
-    """
+def initial_state(right: Baseline, history: Sequence[Baseline], catalogue: Sequence[Cause]) -> ExplainedSession:
+    """The residuals of a session, and nothing sought in them yet."""
     baseline, earlier = baselines(right, history)
     if not history:
         return begin(baseline, earlier, catalogue)
@@ -189,5 +180,4 @@ def initial_state(right: Baseline, history: Sequence[Baseline], catalogue: Seque
     if own is not None:
         own = beside_history(own, *own.beside(right.session, history), tuple(catalogue))
         baseline, earlier = own.beside(right.session, history)
-    state = begin(*with_open_change(baseline, earlier, [own, *known]), catalogue)
-    return replace(state, apart=own is None)
+    return begin(*with_open_change(baseline, earlier, [own, *known]), catalogue)

@@ -18,7 +18,7 @@ from estimator.diagnosis.results import Diagnosis, Finding, Gain, Limit, Rival, 
 from estimator.message import joined, say, say_count
 from estimator.results import ARCSEC, COVERAGE
 from estimator.session import ACCELEROMETER, CalibrationSession
-from estimator.significance import family_wise
+from estimator.significance import critical_chi2, family_wise
 
 CENTIMETRE, MICRO_G = 0.01, STANDARD_GRAVITY * 1e-6
 """m, m/s²."""
@@ -159,7 +159,7 @@ def _score(prediction: HeldOutPrediction) -> Score:
 def _limit(arms: LeverArms) -> Limit:
     if not arms.estimates:
         return Limit(CAUSE.identifier, None, CAUSE.units, "every accelerometer points along the turn axis")
-    need = required(1, LEVEL / len(arms.estimates))
+    need = required(1, critical_chi2(LEVEL / len(arms.estimates), 1))
     sigma = np.max([np.sqrt(np.diag(arm.covariance)) for arm in arms.estimates], axis=0)
     return Limit(CAUSE.identifier, tuple(map(float, need * sigma)), CAUSE.units, "")
 

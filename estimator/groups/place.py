@@ -12,8 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from estimator.diagnosis.residuals.baseline import Baseline
-from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.signatures.traces import INVISIBLE
+from estimator.diagnosis.residuals.whitened import INVISIBLE, WhitenedResiduals
 from estimator.groups.candidates import columns_of
 from estimator.groups.joint_fit import JointFit
 from estimator.groups.layout import EVERY, GroupHypothesis

@@ -4,12 +4,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from estimator.diagnosis.signatures.directions import eigen_whitening
-from estimator.diagnosis.signatures.scores import FAINT
+from estimator.arrays import eigh
 from estimator.groups.statistics import Block
 from estimator.least_squares import given, scale_of
 from estimator.session import Array
 from estimator.significance import equivalent_chi2
+
+FAINT = 0.02
+"""Share of the strongest direction's trace above which a direction of a candidate counts as an amplitude of its own: a
+weaker one would cost a degree of freedom for an amplitude that the sessions hardly show."""
 
 LEFT = 1e-4
 """Share of a candidate's information that others must leave, for it to be asked beside them: below it is one of them.
@@ -35,12 +38,20 @@ def eigen_scores(blocks: Sequence[Block], U: Array, F: Array) -> tuple[Array, Ar
 def batch(U: Array, F: Array) -> tuple[Array, Array]:
     """(H,) χ² and (H,) degrees of freedom of H candidates; ``U`` (H, w), ``F`` (H, w, w), any units.
 
-    What counts as an amplitude of its own is what counts within one session: `FAINT` of the trace, its square of the
-    information.
+    An amplitude of its own has `FAINT` of the trace, its square of the information.
     """
     scale = scale_of(F)
     turn, freedom = eigen_whitening(F * scale[:, :, None] * scale[:, None, :], scale > 0, FAINT)
     return ((((U * scale)[:, None, :] @ turn)[:, 0]) ** 2).sum(axis=1), freedom
+
+
+def eigen_whitening(alike: Array, shown: Array, faint: float) -> tuple[Array, Array]:
+    """(S, q, q) orthonormal directions of columns with the products ``alike`` (S, q, q), each of norm one, zero where a
+    direction has not the share ``faint`` of the strongest, and (S,) int how many have; ``shown`` (S, q) bool."""
+    size, turn = (alike[:, 0], np.ones_like(alike)) if alike.shape[-1] == 1 else eigh(alike)
+    live = (size > faint**2 * size[:, -1:]) & shown.any(axis=1, keepdims=True)
+    inverse = np.where(live, 1 / np.sqrt(np.where(live, size, 1.0)), 0.0)
+    return turn * inverse[:, None, :], live.sum(axis=1)
 
 
 def beside(blocks: Sequence[Block], U: Array, F: Array, found: Sequence[int]) -> tuple[Array, Array]:

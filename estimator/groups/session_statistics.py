@@ -23,10 +23,9 @@ from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.flipped_run import with_fitted_flip
 from estimator.diagnosis.residuals.refitted import refitted
-from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.selection.start import with_residual_scatter
-from estimator.diagnosis.signatures.traces import INVISIBLE
+from estimator.diagnosis.residuals.whitened import INVISIBLE, WhitenedResiduals
 from estimator.groups.candidates import columns_of
+from estimator.groups.scatter import with_residual_scatter
 from estimator.groups.scores import beside, eigen_scores, shrinkage, starts_of
 from estimator.groups.statistics import Block, SessionStatistics, quantised, shared
 from estimator.least_squares import orthonormal

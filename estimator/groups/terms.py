@@ -16,8 +16,7 @@ import numpy as np
 from estimator.calibration.calibrate import averaged
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.flipped_run import with_its_flip
-from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.signatures.traces import INVISIBLE
+from estimator.diagnosis.residuals.whitened import INVISIBLE, WhitenedResiduals
 from estimator.groups.candidates import columns_of
 from estimator.groups.evidence import ALPHA, log_bayes, log_sum
 from estimator.groups.joint_fit import JointFit

@@ -24,8 +24,7 @@ from estimator.causes.contract import Cause, RecordCorrection, Setting, Shape, S
 from estimator.causes.sensor import ExcessNoise
 from estimator.diagnosis.diagnose import initial_state
 from estimator.diagnosis.residuals.fitted import baseline_of
-from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.signatures.traces import INVISIBLE
+from estimator.diagnosis.residuals.whitened import INVISIBLE, WhitenedResiduals
 from estimator.hiding.clipping import clipped
 from estimator.hiding.hidden import HiddenCause, UnhideableError, amplitude_reaching
 from estimator.session import Array, CalibrationSession
@@ -169,15 +168,18 @@ def drawn_effect(
 ) -> tuple[Shape, Array]:
     """A shape of the cause and its amplitudes (q,), per column of the shape, of a strength in standard errors."""
     *earlier, now = (baseline_of(session) for session in sessions)
-    traces = next(iter(initial_state(now, earlier, [cause]).traces), None)
-    if traces is None:
+    residuals = initial_state(now, earlier, [cause]).residuals
+    setting, unseen = residuals.baseline.setting, cause.between and residuals.change is None
+    shapes = [] if unseen or not cause.available(setting) else list(cause.shapes(setting))
+    if not shapes:
         raise UnhideableError(f"{cause.identifier} has nothing here to act on")
-    if sensor is not None and traces.common:
+    if sensor is not None and not shapes[0].sensors:
         raise UnhideableError(f"{cause.identifier} is common to all sensors; name none")
     most = largest_of(now.setting)
-    open_to = np.flatnonzero((traces.sensor == sensor) if sensor is not None else np.ones(len(traces.shapes), bool))
+    open_to = [k for k, shape in enumerate(shapes) if sensor is None or shape.sensors == (sensor,)]
     for k in rng.permutation(open_to).tolist():
-        shape, columns, raw = traces.shapes[k], traces.columns[k], traces.raw[k]
+        shape = shapes[k]
+        columns, raw = residuals.trace(shape.columns, 0.0), np.linalg.norm(residuals.whitened(shape.columns), axis=0)
         size = np.linalg.norm(columns, axis=0)
         seen = size > INVISIBLE * raw
         if not seen.any():

@@ -13,9 +13,9 @@ from scipy.optimize import minimize_scalar
 from estimator.calibration.stand import calibrate_stand
 from estimator.causes import CATALOGUE
 from estimator.diagnosis.explanation.detection_limits import limits
+from estimator.diagnosis.posterior.explained import begin
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.results import Limit
-from estimator.diagnosis.selection.start import begin
 from estimator.errors import ScheduleError, problem_at
 from estimator.planning.elevation import conditioning, gyro_errors, optimal_elevation
 from estimator.planning.expected import expected_sigmas, head_kind, input_noise, over_elevation, over_positions, planned

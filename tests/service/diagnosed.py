@@ -12,9 +12,7 @@ from tests.blind.case import Case
 from tests.blind.cases import draw_case
 from tests.conftest import Holding
 from tests.estimator.causes.hiding import change, scene, with_readings
-from tests.estimator.diagnosis.selection.small import measured
-from tests.estimator.diagnosis.selection.test_common_or_own import swaying
-from tests.estimator.diagnosis.selection.test_noise_claim import stated
+from tests.estimator.diagnosis.small import measured, stated, swaying
 from tests.service.made_sessions import session_id
 
 LONGEST = 16

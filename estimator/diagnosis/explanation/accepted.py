@@ -5,14 +5,16 @@ from dataclasses import replace
 
 from estimator.calibration.calibrate import averaged, calibrate
 from estimator.causes.catalogue import cause
+from estimator.causes.contract import Signature
 from estimator.causes.sensor import ReadingOutlier
 from estimator.diagnosis.explanation.extended_model import amplitudes, extended_calibration
+from estimator.diagnosis.posterior.explained import Detection, begin
+from estimator.diagnosis.posterior.refine import bent
+from estimator.diagnosis.posterior.solve import SessionTerms, at_their_best
+from estimator.diagnosis.posterior.term import ListedTerms, Place, Term
+from estimator.diagnosis.posterior.write import scored
 from estimator.diagnosis.record.clipping import unclipped
 from estimator.diagnosis.residuals.flipped_run import with_its_flip
-from estimator.diagnosis.selection.refinement import with_refined_shapes
-from estimator.diagnosis.selection.search_state import Detection, SearchState
-from estimator.diagnosis.selection.start import begin
-from estimator.diagnosis.signatures.scores import score
 from estimator.results import Calibration
 from estimator.session import CalibrationSession
 
@@ -35,31 +37,36 @@ def calibrate_extended(session: CalibrationSession, causes: Sequence[Accepted]) 
     rows = averaged(session)
     known = [cause(identifier) for identifier, _ in causes]
     clips, whole = unclipped(rows, known)
-    state = begin(with_its_flip(whole), (), known, patterns=())
     done = {(clip.cause.identifier, (clip.sensor,)) for clip in clips}
     names = [sensor.name for sensor in rows.sensors]
     done |= {(ReadingOutlier.identifier, (names.index(out.sensor),)) for out in rows.set_aside}
-    for identifier, sensors in causes:
-        for place in places(rows, sensors):
-            if (identifier, place) not in done:
-                state = with_cause(state, identifier, place)
-    if not state.detections:
+    every = [(identifier, place) for identifier, sensors in causes for place in places(rows, sensors)]
+    state = begin(with_its_flip(whole), (), known)
+    signatures = [c for c in known if isinstance(c, Signature)]
+    detections = accepted_at(SessionTerms.of_causes(state.residuals, signatures), [p for p in every if p not in done])
+    if not detections:
         return calibrate(whole)
-    state = with_refined_shapes(state)
+    state = replace(state, detections=detections)
     return extended_calibration(state, amplitudes(state))
 
 
 def places(session: CalibrationSession, sensors: Sequence[str]) -> list[tuple[int, ...]]:
-    """Places of a cause, as in its shapes: sensor by sensor, or one empty place for no sensor in particular."""
+    """Places of a cause: sensor by sensor, or one empty place for no sensor in particular."""
     names = [s.name for s in session.sensors]
     return [(names.index(s),) for s in sensors if s in names] if sensors else [()]
 
 
-def with_cause(state: SearchState, identifier: str, place: tuple[int, ...]) -> SearchState:
-    """The state with one more cause, at the nonlinear parameters that fit best beside the others."""
-    traces = [t for t in state.traces if t.cause.identifier == identifier]
-    scored = [s for s in score(state.residuals, traces, state.attributed()) if s.sensors == place]
-    if not scored:
-        return state
-    best = max(scored, key=lambda s: s.statistic)
-    return replace(state, detections=(*state.detections, Detection(best, best.p_value, ())))
+def accepted_at(session: SessionTerms, wanted: Sequence[Place]) -> tuple[Detection, ...]:
+    """Causes at their places, each in the shape that fits best beside the others; where it cannot show, none."""
+    terms: tuple[Term, ...] = ()
+    kinds = [kind for kind in session.model.of_causes if isinstance(kind, ListedTerms)]
+    for place in wanted:
+        there = session.model.beside(terms).candidates(kinds)
+        terms = (*terms, *(c.term() for c in there if c.place == place))
+    terms = at_their_best(session, terms)
+    found = []
+    for k, term in enumerate(terms):
+        info = session.model.beside(terms[:k] + terms[k + 1 :]).info
+        (best,) = scored(session, info, term, bent(session.single, info, term))
+        found.append(Detection(best, best.p_value, ()))
+    return tuple(found)

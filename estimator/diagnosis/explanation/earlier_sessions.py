@@ -11,11 +11,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from estimator.diagnosis.explanation.extended_model import Amplitudes
+from estimator.diagnosis.posterior.explained import ExplainedSession, Scored
 from estimator.diagnosis.residuals.prediction import LN_2PI, root_mean_square
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.results import Score, Transfer
-from estimator.diagnosis.selection.search_state import SearchState
-from estimator.diagnosis.signatures.traces import Scored
 from estimator.session import Array
 
 CLEAR = 3.0
@@ -39,7 +38,7 @@ class Effect:
         return replace(self, amplitude=0 * self.amplitude, covariance=0 * self.covariance)
 
 
-def transfer(state: SearchState, fitted: Amplitudes, new: Sequence[bool | None]) -> Transfer | None:
+def transfer(state: ExplainedSession, fitted: Amplitudes, new: Sequence[bool | None]) -> Transfer | None:
     """Scores of the latest earlier session before and after; None where no finding can have acted there.
 
     ``new``: `are_new` of every finding.
@@ -76,7 +75,7 @@ def effect_in(
     return Effect(np.concatenate(columns, axis=-1), fitted.value[chosen], fitted.covariance[np.ix_(chosen, chosen)])
 
 
-def are_new(state: SearchState, fitted: Amplitudes) -> tuple[bool | None, ...]:
+def are_new(state: ExplainedSession, fitted: Amplitudes) -> tuple[bool | None, ...]:
     """Whether each finding came since the latest earlier session; None without history, or for changes since then.
 
     The readings of that session say it: with the effect or without. Where they are undecided, it is how the

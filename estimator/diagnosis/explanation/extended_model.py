@@ -14,11 +14,10 @@ from itertools import pairwise
 import numpy as np
 
 from estimator.calibration.calibrate import calibrate
+from estimator.diagnosis.posterior.explained import Detection, ExplainedSession
 from estimator.diagnosis.residuals.fitted import readings_without
 from estimator.diagnosis.residuals.turns import turned_baseline, turned_session
-from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.selection.search_state import Detection, SearchState
-from estimator.diagnosis.signatures.traces import INVISIBLE
+from estimator.diagnosis.residuals.whitened import INVISIBLE, WhitenedResiduals
 from estimator.least_squares import FAINT, FLAT, least_squares, orthonormal
 from estimator.results import Calibration, Estimate, SensorCalibration
 from estimator.rotations import turn_of
@@ -40,7 +39,7 @@ class Amplitudes:
     """Places of each finding's amplitudes."""
 
 
-def amplitudes(state: SearchState) -> Amplitudes:
+def amplitudes(state: ExplainedSession) -> Amplitudes:
     """Least squares of the residuals on the traces of all findings together."""
     detected = [f.best for f in state.detections]
     widths = np.cumsum([0, *(s.trace.shape[1] for s in detected)])
@@ -62,7 +61,7 @@ def amplitudes(state: SearchState) -> Amplitudes:
     return Amplitudes(covariance @ (columns.T @ z), covariance, slices)
 
 
-def joint_amplitude(state: SearchState, detection: Detection) -> tuple[Array, Array]:
+def joint_amplitude(state: ExplainedSession, detection: Detection) -> tuple[Array, Array]:
     """(q,) SI: the amplitudes of one finding given the others; and (n, q) its trace with theirs projected out,
     standard errors per unit amplitude."""
     attributed = state.attributed(without=detection)
@@ -70,7 +69,7 @@ def joint_amplitude(state: SearchState, detection: Detection) -> tuple[Array, Ar
     return least_squares(columns, state.residuals.z, FAINT).value, columns
 
 
-def without_effects(state: SearchState, fitted: Amplitudes) -> CalibrationSession:
+def without_effects(state: ExplainedSession, fitted: Amplitudes) -> CalibrationSession:
     """The session with the named effects taken out of the readings and the true noise stated.
 
     A sensor's drift stays in: its parameters really are what they are now. A turn of the block is taken out of the
@@ -86,7 +85,7 @@ def without_effects(state: SearchState, fitted: Amplitudes) -> CalibrationSessio
     return replace(session, readings=readings, standard_errors=true_errors(state))
 
 
-def without_turns(state: SearchState, fitted: Amplitudes) -> CalibrationSession:
+def without_turns(state: ExplainedSession, fitted: Amplitudes) -> CalibrationSession:
     """The session as the block would have been held without its turns, in its mounting and in the flipped run."""
     flips = [f.best.cause.turns_flipped_run for f in state.detections]
     turns = [fitted.value[part] for part, is_flip in zip(fitted.slices, flips, strict=True) if is_flip]
@@ -94,7 +93,7 @@ def without_turns(state: SearchState, fitted: Amplitudes) -> CalibrationSession:
     return turned_session(session, turned_back(state, fitted))
 
 
-def turned_back(state: SearchState, fitted: Amplitudes) -> Array:
+def turned_back(state: ExplainedSession, fitted: Amplitudes) -> Array:
     """(3, 3) rotation, dimensionless, from the frame of the session to that of the block before it was turned."""
     turns = [
         fitted.value[part] for f, part in zip(state.detections, fitted.slices, strict=True) if f.best.cause.turns_block
@@ -102,11 +101,11 @@ def turned_back(state: SearchState, fitted: Amplitudes) -> Array:
     return turn_of(-turns[0]) if turns else np.eye(3)
 
 
-def true_errors(state: SearchState) -> Array:
+def true_errors(state: ExplainedSession) -> Array:
     """(R, m) standard errors with the excess noise in them, reading units; no claim makes them smaller than stated."""
     session, scale = state.baseline.session, state.baseline.parameters.scale
     larger = np.ones(state.sensor_count)
-    for noisy in state.scatter:
+    for noisy in state.excess:
         larger[noisy.sensor] *= noisy.ratio
     for claim in state.noise_claims:
         larger[list(claim.sensors)] *= max(claim.ratio, 1.0)
@@ -114,7 +113,7 @@ def true_errors(state: SearchState) -> Array:
     return np.asarray(np.sqrt(larger * (session.standard_errors**2 + repeated) - repeated))
 
 
-def extended_calibration(state: SearchState, fitted: Amplitudes) -> Calibration:
+def extended_calibration(state: ExplainedSession, fitted: Amplitudes) -> Calibration:
     """The calibration under the extended model, its covariance enlarged by the amplitudes' own."""
     plain = calibrate(without_effects(state, fitted))
     if not state.detections:

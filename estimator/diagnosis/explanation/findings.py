@@ -13,21 +13,27 @@ from estimator.diagnosis.explanation.power_on import timed_from_power_on
 from estimator.diagnosis.explanation.rivals import CREDIBLE, alternatives, ranking, separations
 from estimator.diagnosis.explanation.sensor_or_stand import parity_split
 from estimator.diagnosis.explanation.shared_course import CourseMember, shared_finding
+from estimator.diagnosis.posterior.explained import (
+    AppliedCourse,
+    Detection,
+    ExcessVariance,
+    ExplainedSession,
+    NoiseClaim,
+)
+from estimator.diagnosis.residuals.remaining import remaining_of_sensors
 from estimator.diagnosis.results import Course, Finding, NoiseScale, Structure
-from estimator.diagnosis.selection.excess_noise import sensor_scatter
-from estimator.diagnosis.selection.noise_claim import BEYOND_NOISE
-from estimator.diagnosis.selection.search_state import Detection, SearchState
-from estimator.diagnosis.signatures.applied_course import AppliedCourse
-from estimator.diagnosis.signatures.noise import Autocorrelation, ExcessVariance, NoiseClaim, UnlikeNoise
-from estimator.diagnosis.signatures.patterns import Pattern
 from estimator.message import joined, say
-from estimator.session import ACCELEROMETER
+from estimator.session import ACCELEROMETER, Array
 
 UNEXPLAINED = "unexplained"
 """Alternative for an effect that may be none of the catalogue's causes."""
 
+BEYOND_NOISE = 30.0
+"""Times the stated standard errors from which on scatter is no misjudged noise: stated ones were seen to be four to
+twenty times too small."""
 
-def findings(state: SearchState, fitted: Amplitudes, new: Sequence[bool | None]) -> tuple[Finding, ...]:
+
+def findings(state: ExplainedSession, fitted: Amplitudes, new: Sequence[bool | None]) -> tuple[Finding, ...]:
     """Named causes, strongest first; the same cause on several sensors is one finding that lists them all.
 
     ``new``: of every finding, whether it came since the history.
@@ -53,7 +59,9 @@ def courses(named: Sequence[CourseMember]) -> list[list[CourseMember]]:
     return [members for members in together.values() if len(members) > 1]
 
 
-def finding(state: SearchState, detection: Detection, fitted: Amplitudes, part: slice, new: bool | None) -> Finding:
+def finding(
+    state: ExplainedSession, detection: Detection, fitted: Amplitudes, part: slice, new: bool | None
+) -> Finding:
     """One named cause; ``part``: its amplitudes among all."""
     best, cause = detection.best, detection.best.cause
     place = slice(part.start, part.start + len(cause.units))
@@ -86,16 +94,16 @@ def nonlinear(units: Sequence[str], values: Sequence[float]) -> dict[str, float]
     return {name: value + 1 if unit == "row" else value for name, unit, value in pairs}
 
 
-def noise_cause(state: SearchState) -> Cause | None:
+def noise_cause(state: ExplainedSession) -> Cause | None:
     """The cause of the catalogue that names noise above the stated one; None where it holds none."""
     return next((c for c in state.catalogue if isinstance(c, ExcessNoise)), None)
 
 
-def excess_finding(state: SearchState, cause: Cause, excess: ExcessVariance) -> Finding:
+def excess_finding(state: ExplainedSession, cause: Cause, excess: ExcessVariance) -> Finding:
     """A sensor noisier than stated: the amplitude is the extra standard deviation of a reading at the input."""
     sensor = state.baseline.session.sensors[excess.sensor]
     stated, taken = (float(np.mean(v[:, excess.sensor])) for v in (state.stated, state.baseline.variance))
-    energy, freedom = (float(x[excess.sensor]) for x in sensor_scatter(state))
+    energy, freedom = (float(x[excess.sensor]) for x in remaining_of_sensors(state.residuals, named_columns(state)))
     whole = max(taken * energy / max(freedom, 1.0), stated * (1 + 1 / excess.freedom))
     extra = float(np.sqrt(whole - stated))
     sigma = whole * float(np.sqrt(2 / excess.freedom)) / (2 * extra)
@@ -108,39 +116,30 @@ def excess_finding(state: SearchState, cause: Cause, excess: ExcessVariance) -> 
     )
 
 
-def structures(state: SearchState) -> tuple[Structure, ...]:
+def named_columns(state: ExplainedSession) -> Array | None:
+    """(R, m, q) m/s² (rad/s): everything that is named; None where nothing is."""
+    each = [f.best.shape.columns for f in state.detections]
+    return np.concatenate(each, axis=-1) if each else None
+
+
+def structures(state: ExplainedSession) -> tuple[Structure, ...]:
     """Unexplained structure, with its place."""
-    patterns = [
-        Structure(
-            where=pattern_description(state, f),
-            sensors=tuple(state.names[i] for i in f.best.sensors),
-            p_value=f.p_family,
-            strength=f.best.strength,
-        )
+    changed = [
+        Structure(f.best.cause.sentence, tuple(state.names[i] for i in f.best.sensors), f.p_family, f.best.strength)
         for f in state.structures
     ]
-    courses = [Structure(place(a), (state.names[a.sensor],), a.p_value, a.strength) for a in state.autocorrelated]
+    courses = [
+        Structure(
+            say("smooth along {order}, in no known pattern", order=course.order),
+            (state.names[course.sensor],),
+            course.p_value,
+            course.strength,
+        )
+        for course in state.autocorrelated
+    ]
     unnamed = state.excess if noise_cause(state) is None else ()
     larger = [Structure("larger than stated", (state.names[e.sensor],), e.p_family, e.strength) for e in unnamed]
-    return (
-        *patterns,
-        *map(common_course, state.courses),
-        *courses,
-        *larger,
-        *(unlike_noise(state, u) for u in state.unlike_noise),
-        *beyond_noise(state),
-    )
-
-
-def pattern_description(state: SearchState, detection: Detection) -> str:
-    """The words of a pattern, on a sensor of a shared course beside that; for a name that was taken back, that it does
-    not hold.
-    """
-    if not isinstance(detection.best.cause, Pattern):
-        return say("as of {name}, which does not hold", name=detection.best.cause.name)
-    where = detection.best.cause.where(detection.best.shape)
-    departs = any(f.event and f.best.sensors == detection.best.sensors for f in state.detections)
-    return say("{pattern}, beside the course that it shares", pattern=where) if departs else where
+    return (*changed, *map(common_course, state.courses), *courses, *larger, *beyond_noise(state))
 
 
 def common_course(course: AppliedCourse) -> Structure:
@@ -159,18 +158,18 @@ def common_course(course: AppliedCourse) -> Structure:
     )
 
 
-def noise_scales(state: SearchState) -> tuple[NoiseScale, ...]:
+def noise_scales(state: ExplainedSession) -> tuple[NoiseScale, ...]:
     """Sensors whose stated standard errors the readings contradict."""
     return tuple(_noise_scale(state, claim) for claim in state.noise_claims)
 
 
-def _noise_scale(state: SearchState, claim: NoiseClaim) -> NoiseScale:
+def _noise_scale(state: ExplainedSession, claim: NoiseClaim) -> NoiseScale:
     whole = state.baseline.setting.kinds.count(claim.kind) == len(claim.sensors)
     sensors = () if whole else tuple(state.names[i] for i in claim.sensors)
     return NoiseScale(claim.kind, float(np.sqrt(claim.ratio)), claim.freedom, sensors)
 
 
-def beyond_noise(state: SearchState) -> Iterator[Structure]:
+def beyond_noise(state: ExplainedSession) -> Iterator[Structure]:
     """The structures of kinds of sensor that scatter as no noise does."""
     for scale in noise_scales(state):
         if scale.factor > BEYOND_NOISE:
@@ -181,25 +180,7 @@ def beyond_noise(state: SearchState) -> Iterator[Structure]:
             yield Structure(where, scale.sensors, 0.0, float(np.sqrt(scale.freedom)) * scale.factor)
 
 
-def unlike_noise(state: SearchState, unlike: UnlikeNoise) -> Structure:
-    """A sensor whose scatter is not that of noise."""
-    where = (
-        "scatter that is not distributed as noise is"
-        if unlike.of_its_kind
-        else ("scatter far larger than that of the other sensors of its kind")
-    )
-    where = "readings that switch between levels from row to row" if unlike.switches else where
-    return Structure(where, (state.names[unlike.sensor],), unlike.p_value, unlike.strength)
-
-
-def place(course: Autocorrelation) -> str:
-    """The place of a residual that fits no pattern, in words."""
-    if course.plain:
-        return say("smooth along {order}, in no known pattern", order=course.order)
-    return say("larger than stated: either noise or a smooth course along {order}", order=course.order)
-
-
-def notes(state: SearchState) -> tuple[str, ...]:
+def notes(state: ExplainedSession) -> tuple[str, ...]:
     """Remarks for readers of the findings."""
     if not state.in_tails:
         return ()

@@ -7,12 +7,10 @@ from scipy.special import logsumexp
 
 from estimator.diagnosis.explanation.extended_model import joint_amplitude
 from estimator.diagnosis.explanation.next_measurement import proposals
+from estimator.diagnosis.posterior.explained import Detection, ExplainedSession, Scored
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.results import Rival, Separation
-from estimator.diagnosis.selection.search_state import Detection, SearchState
-from estimator.diagnosis.signatures.scores import WORTH
-from estimator.diagnosis.signatures.traces import Scored
 from estimator.least_squares import least_squares
 from estimator.session import Array
 
@@ -28,6 +26,9 @@ NOTICEABLE = 0.1
 """Expected separation, standard errors, below which a measurement is not proposed: 2500 of it would be needed, and
 where the rival absorbs everything what is left is rounding."""
 
+WORTH = 1e-3
+"""p-value of a rival by itself below which it explains anything."""
+
 SHOWN = 8
 """Lines of the ranking that people see."""
 
@@ -38,10 +39,10 @@ def probabilities(detection: Detection) -> list[tuple[Scored, float]]:
     return [(s, float(p)) for (s, _), p in zip(detection.ranking, np.exp(values - logsumexp(values)), strict=True)]
 
 
-def alternatives(state: SearchState, detection: Detection) -> list[Scored]:
+def alternatives(state: ExplainedSession, detection: Detection) -> list[Scored]:
     """Rivals that the session cannot distinguish from the named cause, most likely first.
 
-    A rival with more amplitudes that contains the named cause pays for each of them in its share (`bayes_factor`):
+    A rival with more amplitudes that contains the named cause pays for each of them in its share:
     it is listed where it is still likely after that, and else parsimony has ruled it out. One that is the named cause
     and more of the same (`Cause.contains`) says nothing else. What by itself would be no
     evidence of an effect explains nothing and is no alternative, nor is what lies too far from the named cause.
@@ -70,7 +71,7 @@ def separation(signature: Array, rival: Array, attributed: Array) -> float:
     return float(np.sqrt(least_squares(columns, signature).chi2))
 
 
-def separations(state: SearchState, detection: Detection, others: Sequence[Scored]) -> tuple[Separation, ...]:
+def separations(state: ExplainedSession, detection: Detection, others: Sequence[Scored]) -> tuple[Separation, ...]:
     """The present separation of every alternative, and the measurement that would bring it to `DISTINGUISHED`."""
     attributed = state.attributed(without=detection)
     amplitude, columns = joint_amplitude(state, detection)
@@ -108,7 +109,7 @@ def expected_separation(planned: Baseline, named: Scored, amplitude: Array, riva
     return separation(signature, residuals.trace(other), nothing)
 
 
-def ranking(state: SearchState, detection: Detection) -> tuple[Rival, ...]:
+def ranking(state: ExplainedSession, detection: Detection) -> tuple[Rival, ...]:
     """The strongest causes, as people see them."""
     return tuple(
         Rival(s.cause.identifier, tuple(state.names[i] for i in s.sensors), p, s.strength)

@@ -10,13 +10,13 @@ more. So *before* is taken at the parameters of the extended model: what that le
 import numpy as np
 
 from estimator.diagnosis.explanation.extended_model import joint_amplitude
+from estimator.diagnosis.posterior.explained import Detection, ExplainedSession
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.results import ParitySplit
-from estimator.diagnosis.selection.search_state import Detection, SearchState
 from estimator.session import Array
 
 
-def parity_split(state: SearchState, detection: Detection) -> ParitySplit | None:
+def parity_split(state: ExplainedSession, detection: Detection) -> ParitySplit | None:
     """χ² in parity space and in the range of the axes, with the effect left in and taken out.
 
     None for three sensors, which have no parity.

@@ -11,8 +11,8 @@ import numpy as np
 
 from estimator.diagnosis.explanation.extended_model import Amplitudes
 from estimator.diagnosis.explanation.naming import merged, shared_course
+from estimator.diagnosis.posterior.explained import Detection, ExplainedSession
 from estimator.diagnosis.results import Finding, Shared
-from estimator.diagnosis.selection.search_state import Detection, SearchState
 from estimator.message import joined, say
 from estimator.session import ACCELEROMETER, GYROSCOPE, Array
 
@@ -40,7 +40,7 @@ class CourseMember:
     """Places of its amplitudes among all."""
 
 
-def shared_finding(state: SearchState, members: Sequence[CourseMember], fitted: Amplitudes) -> Finding:
+def shared_finding(state: ExplainedSession, members: Sequence[CourseMember], fitted: Amplitudes) -> Finding:
     """The one finding of sensors that share a course; those that only follow it are counted in it."""
     named = [m for m in members if not m.detection.follows] or list(members)
     more, cause = [m for m in members if m not in named], members[0].detection.best.cause
@@ -76,7 +76,7 @@ def some(names: Sequence[str], count: int) -> str:
     return joined(" and ", (joined(", ", order[:-1]), order[-1]))
 
 
-def group_of(state: SearchState, sensors: Sequence[int]) -> str:
+def group_of(state: ExplainedSession, sensors: Sequence[int]) -> str:
     """Describes the sensors of a course: ``all``, all of a kind, or ``some``."""
     kinds = state.baseline.setting.kinds
     if len(sensors) == len(kinds):
@@ -99,7 +99,7 @@ def shape_of(members: Sequence[CourseMember], fitted: Amplitudes) -> tuple[tuple
     return values, ()
 
 
-def drawn(state: SearchState, members: Sequence[CourseMember], fitted: Amplitudes) -> tuple[Array, Array, Array]:
+def drawn(state: ExplainedSession, members: Sequence[CourseMember], fitted: Amplitudes) -> tuple[Array, Array, Array]:
     """(R,) course, (R,) as all sensors read it and (R,) one standard error of that, m/s² (rad/s) of the first."""
     rows, m = state.baseline.setting.rows, state.sensor_count
     size = np.array([fitted.value[member.part.start] for member in members])

@@ -12,12 +12,12 @@ import numpy as np
 from estimator.arrays import eigh
 from estimator.causes.contract import Setting
 from estimator.diagnosis.posterior.blocks import ColumnBlocks, TermColumns
+from estimator.diagnosis.posterior.course_hypotheses import CourseHypothesis, components, hypotheses
 from estimator.diagnosis.posterior.kernels import HIGHEST, wave
 from estimator.diagnosis.posterior.layout import InputLayout
 from estimator.diagnosis.posterior.priors import COMMON_COURSE, SIZES
 from estimator.diagnosis.posterior.term import COURSE, UnknownCourse
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.signatures.applied_course import CourseHypothesis, components, hypotheses
 
 SEEN = 5e-3
 """Share of the most visible direction of a course below which one counts as none."""

@@ -5,6 +5,7 @@ from functools import partial
 import numpy as np
 
 from estimator.causes.shared import KINDS, SharedCourse, of_kind
+from estimator.diagnosis.posterior.free_course import FreeCourse
 from estimator.diagnosis.posterior.information import InputInformation
 from estimator.diagnosis.posterior.layout import InputLayout
 from estimator.diagnosis.posterior.members import CourseMembers, members_of
@@ -12,7 +13,6 @@ from estimator.diagnosis.posterior.priors import SHARED, SIZES
 from estimator.diagnosis.posterior.shared_causes import PREFIX
 from estimator.diagnosis.posterior.term import CauseEffect, Kind, PlaceCandidate, Since, Term
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.signatures.free_course import FreeCourse
 from estimator.session import Array
 
 FEWEST = 3

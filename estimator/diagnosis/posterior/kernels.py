@@ -11,7 +11,6 @@ import numpy as np
 
 from estimator.arrays import eigh
 from estimator.causes.contract import Setting, varies
-from estimator.diagnosis.signatures.autocorrelation import LENGTHS, ROUND, around, bending
 from estimator.session import Array
 
 FEWEST = 6
@@ -19,6 +18,25 @@ FEWEST = 6
 
 TOGETHER = {"the order measured": "β and the order measured", "temperature": "β and temperature"}
 """Orders along which a course may run together with β."""
+
+USUAL = {
+    "the order measured": 0.4,
+    "temperature": 0.2,
+    "β": 0.1,
+    "the sensor's input": 0.1,
+    "β, each run separately": 0.1,
+    "β and the order measured": 0.05,
+    "β and temperature": 0.05,
+    "the vibration": 0.1,
+}
+"""Prior share of the orders, in proportion: what wanders, wanders in time. Those that a session lacks have none."""
+
+ROUND = (0.4, 1.0)
+"""Length, rad, over which a course around β keeps its value: some six harmonics, or two."""
+
+LENGTHS = (0.08, 0.25)
+"""Share of the order's range over which a bending course keeps its value: shorter ones look like noise over some
+dozen rows, longer ones like the baseline's own terms."""
 
 LEVEL = 0.15
 """Share of the order's range over which a course that jumps keeps its level: half a dozen levels."""
@@ -89,6 +107,18 @@ def along(place: Array) -> Iterator[Array]:
     yield from (bending(place, length) for length in LENGTHS)
     sign = (-1.0) ** np.argsort(np.argsort(place, kind="stable"), kind="stable")
     yield bending(place, LENGTHS[-1]) * np.outer(sign, sign)
+
+
+def bending(place: Array, length: float) -> Array:
+    """(R, R) dimensionless covariance of a course along places (R,) that keeps its value over a length (Matérn 3/2)."""
+    distance = np.sqrt(3) * np.abs(place[:, None] - place) / length
+    return np.asarray((1 + distance) * np.exp(-distance))
+
+
+def around(beta: Array, length: float) -> Array:
+    """(R, R) dimensionless covariance of a course around β (R,), rad, that keeps its value over a length, rad (MacKay
+    1998, periodic)."""
+    return np.asarray(np.exp(-2 * (np.sin((beta[:, None] - beta) / 2) / length) ** 2))
 
 
 def root(kernel: Array) -> Array:

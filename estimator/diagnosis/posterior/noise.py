@@ -14,13 +14,13 @@ import numpy as np
 from scipy.special import gammaln
 
 from estimator.calibration.noise import with_the_others
+from estimator.diagnosis.posterior.explained import NoiseClaim
 from estimator.diagnosis.posterior.priors import MISSTATED, TAILS
 from estimator.diagnosis.posterior.term import NOISE, Term
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.refitted import refitted
+from estimator.diagnosis.residuals.remaining import left_by, remaining_of_sensors
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.selection.start import left_by, remaining_of_sensors
-from estimator.diagnosis.signatures.noise import NoiseClaim
 from estimator.session import Array
 
 ROUNDS = 8

@@ -5,12 +5,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from estimator.diagnosis.posterior.information import InputInformation
-from estimator.diagnosis.posterior.kernels import along_each, common_kernels, common_waves, own_orders, root, waves
+from estimator.diagnosis.posterior.kernels import (
+    USUAL,
+    along_each,
+    common_kernels,
+    common_waves,
+    own_orders,
+    root,
+    waves,
+)
 from estimator.diagnosis.posterior.layout import InputLayout
 from estimator.diagnosis.posterior.priors import OWN_COURSE, SIZES
 from estimator.diagnosis.posterior.term import COURSE, ListedTerms, Term, UnknownCourse
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.signatures.autocorrelation import USUAL
 from estimator.session import Array
 
 

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from estimator.causes.contract import SensorCause, Shape, Signature
+from estimator.diagnosis.posterior.absorbed import absorbed_before
 from estimator.diagnosis.posterior.information import InputInformation
 from estimator.diagnosis.posterior.layout import InputLayout
 from estimator.diagnosis.posterior.priors import EACH_CAUSE, ONE_WITHIN, SIZES
 from estimator.diagnosis.posterior.term import CauseEffect, ListedTerms, Since, Term
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.signatures.lasting import absorbed_before
 from estimator.session import Array
 
 

@@ -1,7 +1,7 @@
 """The likeliest terms of a session, in the noise that is likeliest with them."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -67,14 +67,21 @@ class SessionTerms:
     @classmethod
     def of(cls, residuals: WhitenedResiduals, catalogue: Sequence[Signature], misfortunes: int = 0) -> "SessionTerms":
         """The kinds of a catalogue's causes, and those of everything else, where so many things happened besides."""
+        causes = cls.of_causes(residuals, catalogue, misfortunes)
+        makers = (OwnCourses, NoisySensors, AppliedCourses, WanderingZeros, MovedParameters)
+        others = (*causes.model.of_others, *(make(residuals) for make in makers))
+        return replace(causes, model=replace(causes.model, of_others=others))
+
+    @classmethod
+    def of_causes(
+        cls, residuals: WhitenedResiduals, catalogue: Sequence[Signature], misfortunes: int = 0
+    ) -> "SessionTerms":
+        """The kinds of a catalogue's causes alone, of one sensor, of all and of several."""
         start, T = InputInformation.of(residuals)
         single = SensorCauses(residuals, catalogue)
         shared = SharedCauses(single)
-        of_causes = single, CommonCauses(residuals, catalogue)
-        makers = (OwnCourses, NoisySensors, AppliedCourses, WanderingZeros, MovedParameters)
-        others = shared, FreeShared(residuals), *(make(residuals) for make in makers)
-        model = TermModel(start, of_causes, others, misfortunes)
-        return cls(residuals, T, single, shared, model)
+        of_causes, of_several = (single, CommonCauses(residuals, catalogue)), (shared, FreeShared(residuals))
+        return cls(residuals, T, single, shared, TermModel(start, of_causes, of_several, misfortunes))
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,19 +6,23 @@ import numpy as np
 from scipy.special import logsumexp
 
 from estimator.causes.contract import CommonCause, SensorCause, Shape, Signature
+from estimator.diagnosis.posterior.explained import (
+    AppliedCourse,
+    Autocorrelation,
+    Detection,
+    ExcessVariance,
+    ExplainedSession,
+    Scored,
+    restart_from,
+)
 from estimator.diagnosis.posterior.information import InputInformation
+from estimator.diagnosis.posterior.moved_parameters import OwnChange
 from estimator.diagnosis.posterior.priors import CREDIBLE
 from estimator.diagnosis.posterior.refine import bent
 from estimator.diagnosis.posterior.solve import Noisy, SessionTerms, TermSolution, solve
 from estimator.diagnosis.posterior.term import COURSE, CauseEffect, Since, Term
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.selection.search_state import Detection, SearchState
-from estimator.diagnosis.selection.start import restart_from
-from estimator.diagnosis.signatures.applied_course import AppliedCourse
-from estimator.diagnosis.signatures.noise import Autocorrelation, ExcessVariance
-from estimator.diagnosis.signatures.patterns import OwnChange
-from estimator.diagnosis.signatures.traces import Scored
 from estimator.session import Array
 from estimator.significance import p_value
 
@@ -32,7 +36,7 @@ FOLLOWS = 4.0
 """Standard errors below which a sensor that shares a course is counted, and not named."""
 
 
-def posterior(start: SearchState) -> SearchState:
+def posterior(start: ExplainedSession) -> ExplainedSession:
     """The state of a session in which nothing was sought yet, with what the posterior holds."""
 
     def residuals_of(baseline: Baseline) -> WhitenedResiduals:
@@ -48,7 +52,7 @@ def posterior(start: SearchState) -> SearchState:
     return replace(state, noise_claims=best.noise.claims, in_tails=tuple(lost))
 
 
-def written(start: SearchState, solution: TermSolution) -> SearchState:
+def written(start: ExplainedSession, solution: TermSolution) -> ExplainedSession:
     """A solution as findings are written from it."""
     baseline = solution.session.residuals.baseline
     state = start if baseline is start.baseline else restart_from(start, baseline)
@@ -77,8 +81,8 @@ def detections(solution: TermSolution, term: Term) -> list[Detection]:
     total = float(logsumexp([c.value for c in near] + [0.0]))
     own = next((c.value for c in near if c.place == term.place), 0.0)
     others = sorted((c for c in near if c.named and c.place != term.place), key=lambda c: -c.value)[:SHOWN]
-    ranked = [(scored(session, rest.info, c.term(), c.value)[0], c.value) for c in others]
-    members = scored(session, rest.info, term, own, bent(session.single, rest.info, term))
+    ranked = [(scored(session, rest.info, c.term())[0], c.value) for c in others]
+    members = scored(session, rest.info, term, bent(session.single, rest.info, term))
     several = len(members) > 1
     doubt = several and session.shared.log_own_shapes(rest.info, term) > -np.log(SURE)
     return [
@@ -95,22 +99,19 @@ def detections(solution: TermSolution, term: Term) -> list[Detection]:
     ]
 
 
-def scored(
-    session: SessionTerms, info: InputInformation, term: Term, value: float, moved: Array | None = None
-) -> list[Scored]:
+def scored(session: SessionTerms, info: InputInformation, term: Term, moved: Array | None = None) -> list[Scored]:
     """A term as findings are written from it: one, or one of every sensor that shares it.
 
-    ``info`` beside the others; ``value`` ln posterior odds; ``moved`` (D,) change of the whole effect with its shape,
+    ``info`` beside the others; ``moved`` (D,) change of the whole effect with its shape,
     which is then left free: it is the first one's.
     """
     effect, q = term.effect, term.columns.shape[1]
     assert effect is not None
     if len(term.sensors) < 2:
-        members = [one(session, info, term, term.sensors, slice(0, q), effect.scale, value)]
+        members = [one(session, info, term, term.sensors, slice(0, q), effect.scale)]
     else:
         members = [
-            one(session, info, term, (i,), slice(k, k + 1), effect.scale[k : k + 1], value)
-            for k, i in enumerate(term.sensors)
+            one(session, info, term, (i,), slice(k, k + 1), effect.scale[k : k + 1]) for k, i in enumerate(term.sensors)
         ]
     if moved is not None:
         members[0] = with_free_shape(session, members[0], moved)
@@ -124,7 +125,6 @@ def one(
     sensors: tuple[int, ...],
     own: slice,
     scale: Array,
-    value: float,
 ) -> Scored:
     """The columns ``own`` of a term as those of some sensors, of amplitudes in the cause's SI unit."""
     effect, W = term.effect, term.columns[:, own]
@@ -136,7 +136,7 @@ def one(
     trace = session.T @ W / np.concatenate([scale, np.ones(beside.shape[-1])])
     shape = Shape(sensors, np.concatenate([columns, beside], axis=-1), effect.nonlinear)
     q = W.shape[1]
-    return Scored(effect.cause, shape, lasts(session, effect), trace, statistic, q, value, tail(statistic, q), 1)
+    return Scored(effect.cause, shape, lasts(session, effect), trace, statistic, tail(statistic, q))
 
 
 def tail(statistic: float, q: int) -> float:

@@ -41,11 +41,6 @@ class Prediction:
         """Sum of the log predictive densities of whitened readings, their noise as it was taken."""
         return -0.5 * (self.square + self.volume + self.count * LN_2PI)
 
-    @property
-    def scale_free(self) -> float:
-        """Log predictive density, but for a constant, where the scale of the noise is estimated from the errors."""
-        return -0.5 * (self.count * float(np.log(self.square)) + self.volume)
-
 
 def row_redundancy(baseline: Baseline) -> Array:
     """(R,) number of readings of every row less the directions that they serve to estimate."""

@@ -19,6 +19,10 @@ from estimator.causes.contract import Setting
 from estimator.diagnosis.residuals.baseline import Baseline, Whitener
 from estimator.session import Array
 
+INVISIBLE = 1e-3
+"""Share of a signature that the baseline must leave for it to be visible: below it the effect would have to be a
+thousand times what is seen of it, beyond what the linearised model describes."""
+
 
 @dataclass(frozen=True, eq=False)
 class ParameterChange:

@@ -8,8 +8,8 @@ import pytest
 from estimator.applied_vector import stand_geometry
 from estimator.causes import CATALOGUE, Cause, RecordCorrection, Setting, Shape, Signature, cause, find
 from estimator.causes.contract import NEEDS
+from estimator.diagnosis.posterior.absorbed import RECORDED
 from estimator.diagnosis.residuals.fitted import stand_baseline
-from estimator.diagnosis.signatures.lasting import RECORDED
 from estimator.session import CalibrationSession
 from tests.estimator.calibration.cases import accelerometers, block, gyros
 from tests.estimator.causes.physics import ACTED, SENSOR, World

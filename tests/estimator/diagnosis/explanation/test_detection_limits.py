@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from estimator import diagnose
-from estimator.diagnosis.explanation.detection_limits import required
+from estimator.diagnosis.explanation.detection_limits import named_from, required
 from estimator.diagnosis.results import Limit
 from estimator.session import ACCELEROMETER
 from tests.estimator.calibration.cases import accelerometers, at_rows, block
@@ -39,8 +39,15 @@ def test_half_the_limit_is_mostly_missed() -> None:
     assert sum(seen) <= 6
 
 
-def test_rarer_levels_ask_for_more() -> None:
-    assert required(1, 1e-3) < required(1, 1e-5) < required(3, 1e-5)
+def test_rarer_causes_of_more_amplitudes_ask_for_more() -> None:
+    assert named_from(1, -5.0) < named_from(1, -9.0) < named_from(3, -9.0)
+    assert required(1, 15.0) < required(1, 25.0)
+
+
+def test_an_effect_at_its_limit_passes_nineteen_times_of_twenty() -> None:
+    strength = required(2, 20.0)
+    drawn = np.random.default_rng(5).standard_normal((20000, 2)) + np.array([strength, 0.0])
+    assert np.mean((drawn**2).sum(axis=1) > 20.0) == pytest.approx(0.95, abs=0.005)
 
 
 def test_what_was_not_recorded_is_named_as_the_reason() -> None:

@@ -5,14 +5,14 @@ from functools import cache
 from estimator.causes import CATALOGUE
 from estimator.causes.contract import Signature
 from estimator.diagnosis.diagnose import initial_state
+from estimator.diagnosis.posterior.explained import restart_from
 from estimator.diagnosis.posterior.search import search
 from estimator.diagnosis.posterior.solve import SessionTerms, TermSolution, solve
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.selection.start import restart_from
 from estimator.session import Array, CalibrationSession
-from tests.estimator.diagnosis.selection.small import measured
+from tests.estimator.diagnosis.small import measured
 
 SIGNATURES = [c for c in CATALOGUE if isinstance(c, Signature)]
 

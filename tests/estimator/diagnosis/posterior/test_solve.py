@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 
 from estimator.diagnosis.diagnose import diagnose
-from estimator.diagnosis.posterior.write import posterior
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.session import Array, CalibrationSession
 from tests.estimator.diagnosis.posterior.small import solved
-from tests.estimator.diagnosis.selection.small import ROWS, SENSOR, WHERE, effect, measured, on_sensor
+from tests.estimator.diagnosis.small import ROWS, SENSOR, WHERE, effect, measured, on_sensor
 
 
 def with_errors(session: CalibrationSession, factor: float) -> CalibrationSession:
@@ -69,7 +68,7 @@ def test_a_noisier_sensor_beside_a_cause() -> None:
 
 
 def test_the_posterior_is_written_as_any_diagnosis() -> None:
-    found = diagnose(stated(effect("warm-up")), search=posterior)
+    found = diagnose(stated(effect("warm-up")))
     (finding,) = found.findings
     assert (finding.cause, finding.sensors) == ("warm-up", (f"A{SENSOR + 1}",))
     assert finding.amplitude[0] / finding.sigma[0] > 5
@@ -80,7 +79,7 @@ def test_the_posterior_is_written_as_any_diagnosis() -> None:
 def test_names_do_not_depend_on_those_of_the_sensors() -> None:
     session = stated(effect("hysteresis"))
     renamed = replace(session, sensors=tuple(replace(s, name=f"S{9 - k}") for k, s in enumerate(session.sensors)))
-    (one,), (other,) = (diagnose(s, search=posterior).findings for s in (session, renamed))
+    (one,), (other,) = (diagnose(s).findings for s in (session, renamed))
     assert (one.cause, other.sensors) == (other.cause, (f"S{9 - SENSOR}",))
     assert one.ranking[0].probability == pytest.approx(other.ranking[0].probability, abs=1e-6)
 
@@ -96,6 +95,6 @@ def test_names_do_not_depend_on_the_unit_of_the_readings() -> None:
             for s in session.sensors
         ),
     )
-    (one,), (other,) = (diagnose(s, search=posterior).findings for s in (session, thousand))
+    (one,), (other,) = (diagnose(s).findings for s in (session, thousand))
     assert (one.cause, one.sensors) == (other.cause, other.sensors)
     assert one.ranking[0].probability == pytest.approx(other.ranking[0].probability, abs=0.01)

@@ -12,7 +12,7 @@ from estimator.diagnosis.posterior.solve import SessionTerms
 from estimator.diagnosis.posterior.term import COURSE, MOVED, NOISE, Term
 from estimator.session import Array
 from tests.estimator.diagnosis.posterior.small import places, session_of, sound
-from tests.estimator.diagnosis.selection.small import ROWS, SENSOR, TIME, WHERE, effect, measured, on_sensor
+from tests.estimator.diagnosis.small import ROWS, SENSOR, TIME, WHERE, effect, measured, on_sensor
 
 PLACE = np.arange(ROWS) / ROWS
 WAVE = np.sin(2 * np.pi * 4.5 * PLACE)

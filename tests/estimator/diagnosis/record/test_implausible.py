@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from estimator import diagnose
 from estimator.diagnosis.record.implausible import implausible_axes
 from estimator.diagnosis.residuals.fitted import baseline_of
-from tests.estimator.diagnosis.selection.small import measured
+from tests.estimator.diagnosis.small import measured
 
 BASELINE = baseline_of(measured())
 AXES = BASELINE.parameters.axis

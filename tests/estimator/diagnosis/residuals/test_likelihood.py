@@ -11,20 +11,16 @@ from estimator.diagnosis.residuals.baseline import Baseline, block_columns
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.likelihood import log_likelihood_ratio
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.selection.confirmation import with_free_effects
-from estimator.session import Array
-from tests.estimator.diagnosis.selection.small import candidate, effect, measured, start
+from tests.estimator.diagnosis.small import measured
 
 
-def by_definition(baseline: Baseline, effect: Array | None = None) -> float:
-    """ln density of the contrasts of the readings that no parameter moves, nor an ``effect`` (R, m, q) of any size;
-    constant nuisances as they are spread."""
+def by_definition(baseline: Baseline) -> float:
+    """ln density of the contrasts of the readings that no parameter moves; constant nuisances as they are spread."""
     row = baseline.row * baseline.row_sigma[:, None, :]
     V = block_diag(*(np.diag(v) + h @ h.T for v, h in zip(baseline.variance, row, strict=True)))
     constant = baseline.constant.reshape(len(V), -1) * baseline.constant_sigma
-    free = [block_columns(baseline.design), *([] if effect is None else [effect])]
-    scaled = [x / np.sqrt((x**2).sum(axis=(0, 1))) for x in free]
-    contrasts = null_space(np.concatenate(scaled, axis=-1).reshape(len(V), -1).T)
+    free = block_columns(baseline.design)
+    contrasts = null_space((free / np.sqrt((free**2).sum(axis=(0, 1)))).reshape(len(V), -1).T)
     covariance = contrasts.T @ (V + constant @ constant.T) @ contrasts
     return float(multivariate_normal.logpdf(contrasts.T @ baseline.residual.ravel(), cov=covariance))
 
@@ -35,16 +31,3 @@ def test_it_is_the_density_of_what_no_parameter_moves(factor: float) -> None:
     after = replace(before, variance=before.variance * [1.0, factor, 1.0, 1.0])
     found = log_likelihood_ratio(WhitenedResiduals.of(after), WhitenedResiduals.of(before))
     assert found == pytest.approx(by_definition(after) - by_definition(before), rel=1e-5, abs=1e-3)
-
-
-def test_a_named_effect_is_known_but_for_its_size() -> None:
-    state = start(("bias-jump",), effect("bias-jump"))
-    state = replace(state, detections=(candidate(state, "bias-jump"),))
-    before = with_free_effects(state)
-    after = replace(before, variance=before.variance * [1.0, 3.0, 1.0, 1.0])
-    found = log_likelihood_ratio(WhitenedResiduals.of(after), WhitenedResiduals.of(before))
-    plain = [replace(state.baseline, variance=b.variance) for b in (after, before)]
-    columns = state.detections[0].best.shape.columns
-    assert found == pytest.approx(
-        by_definition(plain[0], columns) - by_definition(plain[1], columns), rel=1e-4, abs=1e-3
-    )

@@ -49,12 +49,6 @@ class FreeCourse:
     """n, the number of shapes that v counts as chosen from."""
 
     @classmethod
-    def of(cls, trace: Array, z: Array, m: int) -> "FreeCourse":
-        """The course of traces (n, m·w) of every sensor's waves in turn and residuals z (n,), standard errors."""
-        w = trace.shape[1] // m
-        return cls.of_products((trace.T @ trace).reshape(m, w, m, w), (trace.T @ z).reshape(m, w))
-
-    @classmethod
     def of_products(cls, gram: Array, along: Array) -> "FreeCourse":
         """The course of the products ``gram`` (m, w, m, w) and ``along`` (m, w) of every sensor's waves.
 

@@ -1,4 +1,4 @@
-"""Effects that lasted since the history, that are new, and such that leave the sensor's own change open."""
+"""What earlier sessions absorbed of an effect that has acted since before them."""
 
 from dataclasses import replace
 
@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from estimator import CalibrationSession
-from estimator.causes import Signature, cause
+from estimator.causes import cause
+from estimator.causes.contract import SensorCause
+from estimator.diagnosis.posterior.absorbed import absorbed_before
 from estimator.diagnosis.residuals.between_sessions import parameter_change
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.signatures.lasting import absorbed_before, traces_of
-from estimator.diagnosis.signatures.traces import Traces
 from estimator.session import ACCELEROMETER
 from tests.estimator.causes.hiding import scene, with_readings
 
@@ -21,62 +21,11 @@ CHANGE = parameter_change(NOW, [baseline_of(h) for h in WHERE.earlier(1)])
 RESIDUALS = WhitenedResiduals.of(NOW, CHANGE)
 
 
-def hypotheses(identifier: str) -> list[Traces]:
-    """The traces of one cause with history."""
-    known = cause(identifier)
-    assert isinstance(known, Signature)
-    return traces_of(RESIDUALS, [known])
-
-
-def moved(traces: Traces) -> np.ndarray:
-    """(S,) norm of what a unit amplitude moves of the parameters, standard errors."""
-    return np.linalg.norm(traces.columns[:, RESIDUALS.rows :, 0], axis=1)
-
-
-def signature(identifier: str) -> Signature:
-    """A cause of the catalogue that has one."""
+def signature(identifier: str) -> SensorCause:
+    """A cause of the catalogue that acts on one sensor."""
     found = cause(identifier)
-    assert isinstance(found, Signature)
+    assert isinstance(found, SensorCause)
     return found
-
-
-def test_a_sensor_s_cause_is_tried_as_lasting_as_new_and_with_its_change_left_open() -> None:
-    lasting, new, open_change = hypotheses("bias-temperature")
-    assert (set(lasting.lasting), set(new.lasting)) == ({True}, {False})
-    assert open_change.width == lasting.width + 5
-
-
-def test_what_lasted_moves_less_than_what_is_new() -> None:
-    lasting, new, _ = hypotheses("bias-temperature")
-    assert np.all(moved(lasting) < 1e-4 * moved(new)), "this session has the schedule of its history"
-
-
-def test_an_open_change_spans_every_change_of_its_sensor_and_of_no_other() -> None:
-    *_, open_change = hypotheses("bias-temperature")
-    step = np.zeros(30)
-    step[5 * 2 : 5 * 2 + 5] = 1e-5
-    own = open_change.whole(2)[1][RESIDUALS.rows :, 1:]
-    assert np.allclose(own @ np.full(5, 1e-5), CHANGE.inverse_root @ step)
-
-
-def test_an_open_change_is_no_amplitude() -> None:
-    *_, open_change = hypotheses("bias-temperature")
-    assert np.all(open_change.raw[:, 1:] == 0)
-    assert np.all(open_change.raw[:, 0] > 0)
-
-
-def test_a_common_cause_is_lasting_or_new() -> None:
-    assert [set(t.lasting) for t in hypotheses("beta-eccentricity")] == [{True}, {False}]
-
-
-def test_a_change_since_the_history_is_new_by_its_nature() -> None:
-    assert [set(t.lasting) for t in hypotheses("remount-rotation")] == [{False}]
-
-
-def test_without_history_there_is_one_hypothesis_and_no_change_to_explain() -> None:
-    alone = WhitenedResiduals.of(NOW)
-    assert len(traces_of(alone, [cause("bias-temperature")])) == 1
-    assert traces_of(alone, [cause("remount-rotation")]) == []
 
 
 def test_what_acts_from_some_row_on_is_not_foretold_in_other_sessions() -> None:

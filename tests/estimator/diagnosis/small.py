@@ -1,5 +1,6 @@
-"""Small sessions for the search: four accelerometers, two dozen rows, few causes to choose from."""
+"""Small sessions: four accelerometers, two dozen rows."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -7,9 +8,6 @@ import numpy as np
 from estimator import CalibrationSession
 from estimator.causes import cause
 from estimator.diagnosis.residuals.fitted import baseline_of
-from estimator.diagnosis.selection.search_state import Detection, SearchState
-from estimator.diagnosis.selection.start import begin
-from estimator.diagnosis.signatures.scores import score
 from estimator.session import Array
 from tests.estimator.calibration.cases import accelerometers, block
 from tests.estimator.causes.hiding import SHAPES, STRENGTH, Scene, strength, with_readings
@@ -44,25 +42,19 @@ def measured(added: Array | float = 0.0, seed: int = 1) -> CalibrationSession:
     return with_readings(WHERE.measured(seed), np.zeros((ROWS, 4)) + added)
 
 
-def start(
-    identifiers: tuple[str, ...], added: Array | float = 0.0, history: tuple[CalibrationSession, ...] = ()
-) -> SearchState:
-    """The search for some causes in such a session."""
-    return begin(baseline_of(measured(added)), [baseline_of(h) for h in history], [cause(i) for i in identifiers])
+def swaying(size: float) -> Array:
+    """(R, m) V, what a stand does whose head nods twice a turn, more in the second run."""
+    setting = baseline_of(measured()).setting
+    assert setting.beta is not None
+    assert setting.flipped is not None
+    assert setting.d_alpha is not None
+    course = size * np.cos(2 * setting.beta + 0.3) * (1 + setting.flipped)
+    return np.asarray(setting.through(setting.d_alpha[..., None])[..., 0] * course[:, None] * setting.parameters.scale)
 
 
-def candidate(
-    state: SearchState, identifier: str, sensors: tuple[int, ...] = (SENSOR,), *, open_change: bool = False
-) -> Detection:
-    """A cause at its best shape, as if it had been selected; with the sensor's change since the history left open."""
-    traces = [
-        t for t in state.traces if t.cause.identifier == identifier and (t.width > len(t.cause.units)) == open_change
-    ]
-    own = [s for s in score(state.residuals, traces, state.attributed()) if s.sensors == sensors]
-    best = max(own, key=lambda s: s.log_evidence)
-    return Detection(best, best.p_value, ((best, best.log_evidence),))
-
-
-def names(state: SearchState) -> list[tuple[str, tuple[int, ...]]]:
-    """Causes that were found, with their sensors, in order."""
-    return sorted(f.best.group for f in state.detections)
+def stated(session: CalibrationSession, factor: float, sensors: slice = slice(None)) -> CalibrationSession:
+    """The session with some standard errors, of repetition too, stated too large by a factor."""
+    errors, known = session.standard_errors.copy(), list(session.sensors)
+    errors[:, sensors] *= factor
+    known[sensors] = [replace(s, bias_repeatability=factor * s.bias_repeatability) for s in known[sensors]]
+    return replace(session, standard_errors=errors, sensors=tuple(known))

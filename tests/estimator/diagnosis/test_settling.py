@@ -10,7 +10,7 @@ from estimator.causes.catalogue import CATALOGUE
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.common_start import baselines
 from estimator.diagnosis.residuals.fitted import baseline_of
-from estimator.diagnosis.selection.settling import Difference, Settling, settling_in, spread, with_open_change
+from estimator.diagnosis.settling import Difference, Settling, settling_in, spread, with_open_change
 from tests.blind.courses import BLOCKS, BOTH, CHANGED, COLD, Life, draw_life
 from tests.blind.steps import Block
 

@@ -30,17 +30,24 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from estimator.causes.contract import Cause, SensorCause, Setting, Shape
+from estimator.causes.contract import Cause, SensorCause, Setting, Shape, Signature
 from estimator.content import each_remembered
+from estimator.diagnosis.posterior.explained import begin
+from estimator.diagnosis.posterior.free_shared import FreeShared
+from estimator.diagnosis.posterior.information import InputInformation
+from estimator.diagnosis.posterior.refine import bent
+from estimator.diagnosis.posterior.search import climbed
+from estimator.diagnosis.posterior.sensor_causes import SensorCauses
+from estimator.diagnosis.posterior.shared_causes import SharedCauses
+from estimator.diagnosis.posterior.solve import SessionTerms, at_their_best, solve
+from estimator.diagnosis.posterior.term import Term
+from estimator.diagnosis.posterior.write import scored
 from estimator.diagnosis.residuals.baseline import Baseline, turn_response
 from estimator.diagnosis.residuals.between_sessions import parameter_change
 from estimator.diagnosis.residuals.common_start import baselines
 from estimator.diagnosis.residuals.fitted import baseline_of, readings_without
 from estimator.diagnosis.residuals.refitted import refitted
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.selection.shared_event import shared_event, significant_course
-from estimator.diagnosis.selection.start import begin
-from estimator.diagnosis.signatures.traces import Scored
 from estimator.least_squares import FAINT, least_squares
 from estimator.session import Array, CalibrationSession
 from estimator.significance import p_value
@@ -115,18 +122,38 @@ def settling_in(session: Baseline, catalogue: tuple[Cause, ...]) -> Settling | N
     fits = p_value(float(residuals.z @ residuals.z), max(residuals.freedom, 1)) > FITS
     if len(session.unstated) < 2 or (fits and not session.unstated.any()):
         return None
-    event = shared_event(begin(session, (), catalogue, patterns=()))
-    if not event or not isinstance(event[0].best.cause, SensorCause):
+    signatures = [c for c in catalogue if isinstance(c, Signature)]
+    if not may_share(residuals, signatures):
         return None
-    return sized(event[0].best.cause, [f.best for f in event], (), residuals.z)
+    solution, _ = solve(session, WhitenedResiduals.of, signatures)
+    term = shared_in(solution.terms)
+    return None if term is None else of_term(solution.session, solution.terms, term, ())
 
 
-def sized(cause: SensorCause, event: Sequence[Scored], beside: Sequence[Scored], z: Array) -> Settling:
-    """A course with the sizes that residuals z (n,) show ``beside`` something else."""
-    traces = [s.trace for s in (*event, *beside)]
-    first = np.cumsum([0, *(t.shape[1] for t in traces[:-1])])
-    size = least_squares(np.concatenate(traces, axis=1), z, FAINT).value[first]
-    return Settling(cause, tuple(s.shape for s in event), size[: len(event)])
+def may_share(residuals: WhitenedResiduals, catalogue: Sequence[Signature]) -> bool:
+    """Whether a course that sensors share explains anything in a session, were it the only thing that acts."""
+    info, _ = InputInformation.of(residuals)
+    shared = SharedCauses(SensorCauses(residuals, [c for c in catalogue if c.shared_sentence]))
+    return any(c.value > 0 for kind in (shared, FreeShared(residuals)) for c in kind.candidates(info))
+
+
+def shared_in(terms: Sequence[Term]) -> Term | None:
+    """The course that most sensors share; None where there is none."""
+    several = [t for t in terms if t.named and len(t.sensors) > 1]
+    return max(several, key=lambda t: len(t.sensors), default=None)
+
+
+def of_term(session: SessionTerms, terms: Sequence[Term], term: Term, beside: Sequence[Term]) -> Settling:
+    """A shared term as a course, with the sizes that the residuals show ``beside`` other terms."""
+    assert term.effect is not None
+    cause = term.effect.cause
+    assert isinstance(cause, SensorCause)
+    info = session.model.beside(tuple(t for t in terms if t is not term)).info
+    members = scored(session, info, term, bent(session.single, info, term))
+    traces = [s.trace for s in members] + [session.T @ t.columns for t in beside]
+    first = np.cumsum([0, *(t.shape[1] for t in traces[: len(members) - 1])])
+    size = least_squares(np.concatenate(traces, axis=1), session.residuals.z, FAINT).value[first]
+    return Settling(cause, tuple(s.shape for s in members), size)
 
 
 def beside_history(
@@ -134,12 +161,13 @@ def beside_history(
 ) -> Settling:
     """The course of a session as its own rows and its history show it together: what the history knows of a zero is
     known of where the course ends."""
-    start = begin(session, history, (own.cause, *(c for c in catalogue if c.moves_parameters)), patterns=())
-    found = significant_course(start)
-    if found is None or not {i for shape in own.shapes for i in shape.sensors} <= set(found[0].course.sensors):
+    causes = [own.cause, *(c for c in catalogue if isinstance(c, Signature) and c.moves_parameters)]
+    terms_of = SessionTerms.of_causes(begin(session, history, causes).residuals, causes)
+    terms = at_their_best(terms_of, climbed(terms_of.model, terms_of.model.kinds))
+    term = shared_in([t for t in terms if t.effect is not None and t.effect.cause is own.cause])
+    if term is None or not {i for shape in own.shapes for i in shape.sensors} <= set(term.sensors):
         return own
-    followed, event = found
-    return sized(own.cause, event, followed.changed, start.residuals.z)
+    return of_term(terms_of, terms, term, [t for t in terms if t is not term])
 
 
 @dataclass(frozen=True, eq=False)

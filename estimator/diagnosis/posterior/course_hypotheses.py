@@ -1,16 +1,8 @@
-"""An unknown course of the applied vector: an error of stand, fixture or reference that no cause describes.
+"""Families of unknown courses of the applied vector.
 
-Theory
-------
-Every sensor sees a change δn of the applied vector through its axis, e·δn. The course of δn over a session is a
-Gaussian process in up to three components (turns along β and α, relative size), each of covariance λ·K over the
-rows: smooth along the order measured, smooth along β in all runs alike or run by run, or anew at every row. With T the
-trace of the columns of L, K = LL', and T'T = U·diag(d)·U', v = U'T'z, the Bayes factor against noise of known variance
-is
-
-    ln B = −½ Σ ln(1 + λd) + ½ Σ v² λ/(1 + λd)                      (Rasmussen & Williams 2006, (2.30))
-
-It is the mean over components, kernels and λ. No sensor's own fault hides there: half its energy lies in parity space.
+The course of a change δn over a session is a Gaussian process in up to three components (turns along β and α, relative
+size): smooth along the order measured, smooth along β in all runs alike or run by run, anew at every row, or a change
+that stays.
 """
 
 from collections.abc import Iterator
@@ -20,48 +12,15 @@ import numpy as np
 
 from estimator.arrays import eigh
 from estimator.causes.contract import Setting
-from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.signatures.autocorrelation import LENGTHS, around, bending
-from estimator.diagnosis.signatures.noise import normal_deviate
-from estimator.diagnosis.signatures.wandering import log_mean
+from estimator.diagnosis.posterior.kernels import FAINT, LENGTHS, around, bending
 from estimator.message import say
 from estimator.session import ACCELEROMETER, Array
 
 ROUND = (0.4, 1.0, 2.5)
 """Length, rad, over which a course in β keeps its value: some six harmonics, two, or little more than the first."""
 
-LEAST_ENERGY, STEPS = 0.1, 14
-"""λ runs from a course hardly visible to one that holds all the energy there is, in so many steps."""
-
-FAINT = 1e-4
-"""Share of a kernel's largest direction below which one counts as none."""
-
 SIZE = "size"
 """The component that no turn of the applied vector makes."""
-
-
-@dataclass(frozen=True, eq=False)
-class AppliedCourse:
-    """The course that explains most, and the evidence of all. R rows, c components."""
-
-    log_evidence: float
-    """ln Bayes factor against no course, the mean over all that were tried."""
-    order: str
-    """Order of the rows along which it runs."""
-    components: tuple[str, ...]
-    """Components of the applied vector that change, in words."""
-    value: Array
-    """(R, c) most likely course: turns in rad, relative size dimensionless."""
-
-    @property
-    def p_value(self) -> float:
-        """Chance of as much evidence without any course: no more than 1/B (Markov)."""
-        return float(min(1.0, np.exp(-self.log_evidence)))
-
-    @property
-    def strength(self) -> float:
-        """Normal deviate, in standard errors, with the same evidence."""
-        return normal_deviate(self.log_evidence)
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,48 +111,8 @@ def changes(setting: Setting) -> Iterator[tuple[str, Array]]:
             )
 
 
-def applied_course(residuals: WhitenedResiduals, attributed: Array, *, lasting: bool) -> AppliedCourse:
-    """The course of the applied vector that explains most of the residuals.
-
-    ``attributed`` (n, f) orthonormal traces of findings, dimensionless, which are projected out; ``lasting``: whether
-    the history's sessions had the same course. The noise is taken as it is in the residuals.
-    """
-    z = residuals.z - attributed @ (attributed.T @ residuals.z)
-    tried, leading = [], None
-    for hypothesis in hypotheses(residuals.baseline.setting):
-        trace = residuals.trace(hypothesis.columns, None if lasting else 0.0)
-        trace = trace - attributed @ (attributed.T @ trace)
-        log_evidence, coefficients = evidence(trace, z)
-        if leading is None or log_evidence > max(tried):
-            leading = hypothesis, coefficients
-        tried.append(log_evidence)
-    assert leading is not None
-    likeliest, coefficients = leading
-    return AppliedCourse(
-        log_evidence=log_mean(tried),
-        order=likeliest.order,
-        components=likeliest.components,
-        value=(likeliest.lift @ coefficients).T,
-    )
-
-
 def covariance_root(kernel: Array) -> Array:
     """L (R, r) with LL' a covariance (R, R), dimensionless, directions of no size left out."""
     size, turn = eigh(kernel)
     positive = size > FAINT * size[-1]
     return np.asarray(turn[:, positive] * np.sqrt(size[positive]))
-
-
-def evidence(trace: Array, z: Array) -> tuple[float, Array]:
-    """ln B of one family of courses, the mean over their size, and the coefficients (r,) of the most likely course.
-
-    ``trace`` (n, r) of its unit coefficients and residuals ``z`` (n,), standard errors.
-    """
-    size, turn = eigh(trace.T @ trace)
-    size, power = np.maximum(size, 0.0), turn.T @ (trace.T @ z)
-    strengths = np.geomspace(LEAST_ENERGY, max(float(z @ z), 10.0), STEPS) / max(float(size.sum()), 1e-300)
-    shrunk = strengths[:, None] / (1 + strengths[:, None] * size)
-    volume = -0.5 * np.log1p(strengths[:, None] * size).sum(axis=1)
-    values = volume + 0.5 * (power**2 * shrunk).sum(axis=1)
-    value = turn @ (power * shrunk[int(np.argmax(values))])
-    return log_mean(values), value

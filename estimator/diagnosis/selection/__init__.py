@@ -1,1 +1,0 @@
-"""The search for causes: forward selection, backward elimination, refinement of shapes."""

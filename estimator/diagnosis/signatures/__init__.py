@@ -1,1 +1,0 @@
-"""Signatures of causes in the residuals, with the score of each."""
