@@ -4,7 +4,8 @@ Each is a hypothesis with its own residuals and its own search. They are compare
 readings in that noise (`residuals.likelihood`), the evidence of the terms found there, and prior odds; a factor that is
 not known is integrated out. Tails are Student's t with ν degrees of
 freedom, as normal noise of the variances at which both laws pull a reading alike (Lange, Little and Taylor 1989); what
-the laws differ by at the residuals found is added (Laplace's method, MacKay 2003, 27).
+the laws differ by at the residuals found is added (Laplace's method, MacKay 2003, 27): the normal law has the same
+determinant.
 """
 
 from collections.abc import Sequence
@@ -15,9 +16,11 @@ from scipy.special import gammaln
 
 from estimator.calibration.noise import with_the_others
 from estimator.diagnosis.posterior.explained import NoiseClaim
+from estimator.diagnosis.posterior.members import log_sets
 from estimator.diagnosis.posterior.priors import MISSTATED, TAILS
 from estimator.diagnosis.posterior.term import NOISE, Term
 from estimator.diagnosis.residuals.baseline import Baseline
+from estimator.diagnosis.residuals.likelihood import log_likelihood_ratio
 from estimator.diagnosis.residuals.refitted import refitted
 from estimator.diagnosis.residuals.remaining import left_by, remaining_of_sensors
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
@@ -108,75 +111,125 @@ class OtherNoise:
     tails: bool = False
 
 
-def off_by_a_factor(baseline: Baseline, terms: Sequence[Term], noisy: Sequence[int]) -> OtherNoise | None:
-    """The stated noise of whole kinds off by a factor each, as what terms leave shows; None where it is as stated.
+@dataclass(frozen=True, eq=False)
+class OffTogether:
+    """Sensors of a kind whose stated noise is off by one factor."""
 
-    ``noisy``: sensors that were found noisier than stated; where they are few of a kind the others tell its factor.
+    kind: str
+    sensors: Array
+    """(m,) bool."""
+    factor: float
+    """Variance over the stated one."""
+    freedom: float
+    log_prior: float
+    """ln prior odds of this set and, by Laplace's method, of a factor as near."""
+
+
+def off_by_a_factor(baseline: Baseline, terms: Sequence[Term]) -> OtherNoise | None:
+    """The stated noise of a kind of sensor, or of some of them, off by a factor, as what terms leave shows; None where
+    it is as stated.
+
+    Step by step: a sensor that is believed too much pulls what all share of a row to its own readings.
     """
     named, kinds = columns_of(baseline, unlike_noise(baseline, terms)), np.array(baseline.setting.kinds)
-    energy, freedom = remaining_of_sensors(WhitenedResiduals.of(baseline), named)
-    variance, unstated = baseline.variance.copy(), baseline.unstated
-    known = ~np.isin(np.arange(len(kinds)), noisy)
-    off = []
-    for kind in dict.fromkeys(baseline.setting.kinds):
-        own = kinds == kind
-        asked = own & known if 2 * (own & known).sum() > own.sum() else own
-        E, nu = float(energy[asked].sum()), float(freedom[asked].sum())
-        if own.sum() < 2 or unstated[own].any() or nu < FEWEST:
-            continue
-        E = max(E, FAINTEST**2 * nu)
-        if 0.5 * (E - nu - nu * np.log(E / nu)) - 0.5 * np.log(nu / 2) + np.log(MISSTATED) > 0:
-            off.append(kind)
-    if not off:
-        return None
-    groups = [kinds == kind for kind in off]
+    variance, off = baseline.variance, list[OffTogether]()
     for _ in range(ROUNDS):
         energy, freedom = remaining_of_sensors(WhitenedResiduals.of(replace(baseline, variance=variance)), named)
-        ratio = [max(energy[g].sum() / max(freedom[g].sum(), 1.0), FAINTEST**2) for g in groups]
-        for group, factor in zip(groups, ratio, strict=True):
-            variance[:, group] *= factor
-        if np.abs(np.log(ratio)).max() < STANDS:
+        energy = energy * np.median(variance / baseline.variance, axis=0)
+        stated = [kind for kind in dict.fromkeys(kinds.tolist()) if not baseline.unstated[kinds == kind].any()]
+        each = [likeliest_set(kind, kinds == kind, energy, freedom) for kind in stated]
+        off, before = [one for one in each if one is not None], variance
+        variance = baseline.variance.copy()
+        for one in off:
+            variance[:, one.sensors] *= one.factor
+        if np.abs(np.log(variance / before)).max() < STANDS:
             break
-    prior, claims = 0.0, []
-    for kind, group in zip(off, groups, strict=True):
-        nu = float(freedom[group].sum())
-        prior += float(np.log(MISSTATED) - 0.5 * np.log(nu / 2))
-        factor = float(np.median(variance[:, group] / baseline.variance[:, group]))
-        claims.append(NoiseClaim(kind, tuple(np.flatnonzero(group).tolist()), factor, nu))
+    if not off:
+        return None
+    claims = [NoiseClaim(one.kind, tuple(np.flatnonzero(one.sensors).tolist()), one.factor, one.freedom) for one in off]
+    prior = sum(one.log_prior for one in off)
     return OtherNoise(refitted(replace(baseline, variance=variance)), prior, tuple(claims))
+
+
+def likeliest_set(kind: str, own: Array, energy: Array, freedom: Array) -> OffTogether | None:
+    """The likeliest set of sensors of a kind, two at least, whose noise is off by one factor; None where that of all is
+    as stated.
+
+    ``own`` (m,) those of the kind; ``energy`` (m,) in stated variances and ``freedom`` (m,) of their residuals. What
+    most of them show holds for all: one that scatters otherwise has an effect, or noise, of its own. Half of the prior
+    is on all of them, half on fewer as `log_sets` has it.
+    """
+    order = sorted(np.flatnonzero(own).tolist(), key=lambda i: energy[i] / max(freedom[i], LEAST_FREE))
+    m, best, found = len(order), 0.0, None
+    for some in (end for k in range(2, m + 1) for end in (order[:k], order[-k:])):
+        nu, most = float(freedom[some].sum()), 2 * len(some) > m
+        if nu < FEWEST:
+            continue
+        E = max(float(energy[some].sum()), FAINTEST**2 * nu)
+        prior = float(np.log(MISSTATED / 2) + (0.0 if most else log_sets(m)[len(some) - 1]) - 0.5 * np.log(nu / 2))
+        value = 0.5 * (E - nu - nu * np.log(E / nu)) + prior
+        if value > best:
+            sensors = own if most else np.isin(np.arange(len(own)), some)
+            best, found = value, OffTogether(kind, sensors, E / nu, nu, prior)
+    return found
 
 
 def with_tails(baseline: Baseline, terms: Sequence[Term]) -> OtherNoise | None:
     """The noise with the likeliest tails, as what terms leave shows, but for those of single readings; None where it is
     normal."""
     named = columns_of(baseline, [t for t in unlike_noise(baseline, terms) if np.count_nonzero(t.columns) > 1])
-    best, found = 0.0, None
+    normal, best, found = Remaining.of(baseline, named), 0.0, None
     for nu in FREEDOMS:
         prior = float(np.log(TAILS / len(FREEDOMS)))
-        scale, variance = np.full(len(baseline.unstated), np.sqrt((nu - 2) / nu)), baseline.variance
+        scale, tailed = np.full(len(baseline.unstated), np.sqrt((nu - 2) / nu)), normal
         for _ in range(ROUNDS):
-            r, freedom = readings_left(replace(baseline, variance=variance), baseline.variance, named)
+            r = tailed.z * np.sqrt(tailed.variance / baseline.variance)
             weight = (nu + 1) / (nu + (r / scale) ** 2)
             if baseline.unstated.any():
-                scale = np.sqrt((freedom * weight * r**2).sum(axis=0) / np.maximum(freedom.sum(axis=0), 1e-300))
+                scale = np.sqrt((weight * r**2).sum(axis=0) / np.maximum(tailed.freedom.sum(axis=0), 1e-300))
             scale = np.maximum(scale, FAINTEST)
-            variance = baseline.variance * scale**2 / weight
-        law = log_t(r, nu, scale)
-        gained = float((freedom * (law - log_normal(r, np.ones_like(scale)))).sum()) + prior
+            tailed = Remaining.of(replace(baseline, variance=baseline.variance * scale**2 / weight), named)
+        sigma = np.sqrt(tailed.variance / baseline.variance)
+        r = tailed.z * sigma
+        difference = float((log_t(r, nu, scale) - log_normal(r, sigma)).sum())
+        gained = tailed.log_likelihood_over(normal) + difference + prior
         if gained > best:
-            difference = float((freedom * (law - log_normal(r, scale / np.sqrt(weight)))).sum())
-            tailed = refitted(replace(baseline, variance=variance))
-            best, found = gained, OtherNoise(tailed, prior + difference, tails=True)
+            noise = refitted(replace(baseline, variance=tailed.variance))
+            best, found = gained, OtherNoise(noise, prior + difference, tails=True)
     return found
 
 
-def readings_left(baseline: Baseline, stated: Array, named: Array | None) -> tuple[Array, Array]:
-    """(R, m) what columns ``named`` leave of each reading, in the sigmas of the ``stated`` variance (R, m), and (R, m)
-    its degrees of freedom."""
-    z, freedom = left_by(WhitenedResiduals.of(baseline), named)
-    z, freedom = (x[: stated.size].reshape(stated.shape) for x in (z, freedom))
-    freedom = np.where(freedom > LEAST_FREE, freedom, 0.0)
-    return z / np.sqrt(np.maximum(freedom, LEAST_FREE)) * np.sqrt(baseline.variance / stated), freedom
+@dataclass(frozen=True, eq=False)
+class Remaining:
+    """The part of a session's readings that named columns leave in one noise. R rows, m sensors."""
+
+    residuals: WhitenedResiduals
+    z: Array
+    """(R, m) standard errors."""
+    freedom: Array
+    """(R, m) degrees of freedom of each."""
+
+    @classmethod
+    def of(cls, baseline: Baseline, named: Array | None) -> "Remaining":
+        """What columns ``named`` (R, m, q), any unit, leave; all of it where None."""
+        residuals = WhitenedResiduals.of(baseline)
+        z, freedom = (x[: baseline.residual.size].reshape(baseline.residual.shape) for x in left_by(residuals, named))
+        return cls(residuals, z, freedom)
+
+    @property
+    def variance(self) -> Array:
+        """(R, m) of the noise, (m/s²)² ((rad/s)²)."""
+        return self.residuals.baseline.variance
+
+    @property
+    def explained(self) -> float:
+        """χ² that the columns take."""
+        return float(self.residuals.z @ self.residuals.z - (self.z**2).sum())
+
+    def log_likelihood_over(self, other: "Remaining") -> float:
+        """ln of the restricted likelihood of the readings beside the columns, over that in another noise."""
+        gained = 0.5 * (self.explained - other.explained)
+        return log_likelihood_ratio(self.residuals, other.residuals) + gained
 
 
 FAINTEST = 1e-4

@@ -151,7 +151,7 @@ def solve(
     rivals = [stated]
     for _ in range(FACTORS):
         found = rivals[-1]
-        factor = off_by_a_factor(baseline, found.terms, [n.sensor for n in found.noisy])
+        factor = off_by_a_factor(baseline, found.terms)
         if factor is None or is_alike(factor.baseline, found.session.residuals.baseline):
             break
         rivals.append(solved(factor.baseline, factor))

@@ -13,7 +13,7 @@ small a noise of one sensor shows in all of them: what they share of a row, its 
 
 import numpy as np
 
-from estimator.diagnosis.residuals.baseline import RANK, Baseline
+from estimator.diagnosis.residuals.baseline import RANK, Baseline, turn_response
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.session import Array
 
@@ -28,9 +28,22 @@ def log_likelihood_ratio(first: WhitenedResiduals, other: WhitenedResiduals) -> 
 
 def restricted(residuals: WhitenedResiduals, scale: Array) -> float:
     """ln L up to a constant that does not depend on the noise; ``scale`` (5 m + k,) any unit of each column."""
-    design = residuals.baseline.whitened_design / scale
+    design = without_turn(residuals.baseline, scale)
     value = -0.5 * float(residuals.z @ residuals.z) - log_size(design) + row_determinants(residuals.baseline)
     return value if residuals.change is None else value + log_size(residuals.change.inverse_root)
+
+
+def without_turn(baseline: Baseline, scale: Array) -> Array:
+    """(N, 5 m + k) the whitened design in units ``scale`` of its columns, without the common turn of axes that nothing
+    observes: in noise of other shares it would leave a trace of rounding and curvature, and change the rank."""
+    design = baseline.whitened_design / scale
+    if not baseline.gauge_free.any():
+        return np.asarray(design)
+    P = 5 * len(baseline.gauge_free)
+    turn, _ = np.linalg.qr(
+        turn_response(baseline.parameters) * (np.repeat(baseline.gauge_free, 5) * scale[:P])[:, None]
+    )
+    return np.concatenate([design[:, :P] - (design[:, :P] @ turn) @ turn.T, design[:, P:]], axis=1)
 
 
 def log_size(matrix: Array) -> float:
