@@ -76,7 +76,7 @@ class SeenShapes:
         one."""
         q = self.norm.shape[1]
         need = required(q, named_from(q, self.log_prior)) / np.maximum(self.norm, 1e-300)
-        amplitude = np.where(need < self.largest, need * self.scale, -np.inf).max(axis=0)
+        amplitude = np.where(need < self.largest, np.minimum(need, self.largest) * self.scale, -np.inf).max(axis=0)
         return np.where(np.isfinite(amplitude), amplitude, np.nan)
 
 

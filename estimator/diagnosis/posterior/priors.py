@@ -34,6 +34,10 @@ get a name."""
 EACH_CAUSE = SOMETHING / 44
 """Prior odds of one cause of the catalogue, all its places and shapes together."""
 
+IN_PART = 0.03
+"""Share of a cause's odds on that it acted in part of the history, so that its sensor changed since then by any amount:
+else every change of a sensor could pass for some effect that hardly shows."""
+
 FURTHER = float(np.log(0.03))
 """ln of the odds that something else happened in the same session, over those that anything did: misfortunes are
 independent, and two of them are rarer than one."""

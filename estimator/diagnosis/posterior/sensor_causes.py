@@ -9,10 +9,14 @@ from estimator.causes.contract import SensorCause, Shape, Signature
 from estimator.diagnosis.posterior.absorbed import absorbed_before
 from estimator.diagnosis.posterior.information import InputInformation
 from estimator.diagnosis.posterior.layout import InputLayout
-from estimator.diagnosis.posterior.priors import EACH_CAUSE, ONE_WITHIN, SIZES
+from estimator.diagnosis.posterior.priors import EACH_CAUSE, IN_PART, ONE_WITHIN, SIZES
 from estimator.diagnosis.posterior.term import CauseEffect, ListedTerms, Since, Term
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.session import Array
+
+
+SINCE = {Since.BEFORE: (1 - IN_PART) / 2, Since.NOW: (1 - IN_PART) / 2, Since.OPEN: IN_PART}
+"""Shares of a cause's prior by since when it acts, where there is a history."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,10 +95,10 @@ class SensorCauses(ListedTerms):
             if len(acts):
                 found.append((i, [grid[k] for k in acts], terms[acts] * scale[acts][:, None, :], scale[acts]))
         places = sum(len(grid) for _, grid, _, _ in found)
-        assumed = (Since.NOW,) if self.layout.P == 0 or cause.between else (Since.BEFORE, Since.NOW, Since.OPEN)
+        assumed = {Since.NOW: 1.0} if self.layout.P == 0 or cause.between else SINCE
         for i, grid, terms, scale in found:
-            prior = float(np.log(EACH_CAUSE / places / len(assumed)))
-            for since in assumed:
+            for since, share in assumed.items():
+                prior = float(np.log(EACH_CAUSE / places * share))
                 rows = self.placed(cause, i, since, grid, terms, scale)
                 yield SensorShapes(cause, i, since, tuple(grid), rows, scale, prior, open_by(terms))
 

@@ -69,6 +69,8 @@ def what_is_wrong(finding: Finding, findings: Sequence[Finding] = ()) -> str:
         count, names = "Two" if len(at_once) == 2 else "Several", joined(" and ", map(cause_name, at_once))
         parts = {"count": count, "one_not_known": ONE_NOT_KNOWN, "sensors": _on(finding.sensors), "names": names}
         return say("{count} causes at once, or {one_not_known}{sensors}: {names}.", **parts)
+    if is_lone(finding):
+        return say("{choice}.", choice=choice_of(finding))
     likely, unlikely = by_share(finding)
     if len(likely) > 1 or not unlikely:
         less = say("; {unlikely}", unlikely=_less(unlikely, finding)) if unlikely else ""
