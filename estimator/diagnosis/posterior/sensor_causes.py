@@ -14,7 +14,6 @@ from estimator.diagnosis.posterior.term import CauseEffect, ListedTerms, Since, 
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.session import Array
 
-
 SINCE = {Since.BEFORE: (1 - IN_PART) / 2, Since.NOW: (1 - IN_PART) / 2, Since.OPEN: IN_PART}
 """Shares of a cause's prior by since when it acts, where there is a history."""
 

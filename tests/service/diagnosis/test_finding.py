@@ -61,7 +61,7 @@ def test_a_cause_that_this_version_does_not_know_is_called_by_its_identifier() -
 
 
 def test_that_no_known_cause_may_act_is_said() -> None:
-    assert what_is_wrong(LONE) == "The bias jumps, or possibly a cause outside the catalogue."
+    assert what_is_wrong(LONE) == "The zero of A1 and A2 jumped, or possibly a cause outside the catalogue."
     many = replace(JUMP, alternatives=("warm-up", "bias-ramp", "hysteresis", "unexplained"), sensors=(), ranking=())
     listed = "bias jump, warm up, bias ramp, 1 more or a cause outside the catalogue"
     assert what_is_wrong(many) == f"Cannot tell which: {listed}."
