@@ -133,7 +133,8 @@ def test_an_effect_that_no_catalogue_has(client: httpx.Client) -> None:
     diagnosis = service.get(f"/sessions/{stored}/diagnosis")
     assert (diagnosis["findings"], diagnosis["unexplained"]) == ([], True)
     assert diagnosis["summary"] == (
-        "An effect common to all sensors, of the stand or fixture, that no known cause explains: harmonic 5 of β."
+        "An effect common to all sensors, of the stand or fixture, that no known cause explains: the applied vector "
+        "deviates in β, harmonic 5 of β."
     )
 
 

@@ -18,9 +18,14 @@ from estimator.diagnosis.posterior.layout import InputLayout
 from estimator.diagnosis.posterior.priors import COMMON_COURSE, SIZES
 from estimator.diagnosis.posterior.term import COURSE, UnknownCourse
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
+from estimator.message import say
 
 SEEN = 5e-3
 """Share of the most visible direction of a course below which one counts as none."""
+
+
+LOWEST = 3
+"""Harmonic of β from which on a wave is no cause of the catalogue: eccentricity, wobble and bearing are the others."""
 
 
 class AppliedCourses(ColumnBlocks):
@@ -50,11 +55,11 @@ def block(residuals: WhitenedResiduals, layout: InputLayout, course: CourseHypot
 
 
 def waves(setting: Setting) -> Iterator[CourseHypothesis]:
-    """Waves of the applied vector's turns around β, and over the session."""
+    """Waves of the applied vector's turns around β, where they are no cause of the catalogue, and over the session."""
     if setting.beta is None:
         return
     place = np.arange(setting.rows) / setting.rows
-    tried = [("β", wave(setting.beta * k)) for k in range(1, HIGHEST + 1)]
+    tried = [(say("harmonic {shape} of β", shape=k), wave(setting.beta * k)) for k in range(LOWEST, HIGHEST + 1)]
     tried += [("the order measured", wave(2 * np.pi * k * place)) for k in range(1, setting.rows // 2)]
     for order, columns in tried:
         for part in components(setting)[:2]:

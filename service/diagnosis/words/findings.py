@@ -341,4 +341,6 @@ def course_in_words(course: Course) -> str:
     quantity = joined(" and ", course.components)
     if course.order.startswith("no order"):
         return say("deviates in {what}, independently in every row", what=quantity)
+    if course.order.startswith("harmonic"):
+        return say("deviates in {what}, {order}", what=quantity, order=course.order)
     return say("deviates in {what}, smoothly along {order}", what=quantity, order=course.order)
