@@ -19,6 +19,7 @@ from estimator.diagnosis.posterior.priors import COMMON_COURSE, SIZES
 from estimator.diagnosis.posterior.term import COURSE, UnknownCourse
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.message import say
+from estimator.session import Array
 
 SEEN = 5e-3
 """Share of the most visible direction of a course below which one counts as none."""
@@ -59,7 +60,9 @@ def waves(setting: Setting) -> Iterator[CourseHypothesis]:
     if setting.beta is None:
         return
     place = np.arange(setting.rows) / setting.rows
-    tried = [(say("harmonic {shape} of β", shape=k), wave(setting.beta * k)) for k in range(LOWEST, HIGHEST + 1)]
+    tried: list[tuple[str, Array]] = [
+        (say("harmonic {shape} of β", shape=k), wave(setting.beta * k)) for k in range(LOWEST, HIGHEST + 1)
+    ]
     tried += [("the order measured", wave(2 * np.pi * k * place)) for k in range(1, setting.rows // 2)]
     for order, columns in tried:
         for part in components(setting)[:2]:
