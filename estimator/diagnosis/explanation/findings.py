@@ -15,6 +15,7 @@ from estimator.diagnosis.explanation.sensor_or_stand import parity_split
 from estimator.diagnosis.explanation.shared_course import CourseMember, shared_finding
 from estimator.diagnosis.posterior.explained import (
     AppliedCourse,
+    Autocorrelation,
     Detection,
     ExcessVariance,
     ExplainedSession,
@@ -122,6 +123,13 @@ def named_columns(state: ExplainedSession) -> Array | None:
     return np.concatenate(each, axis=-1) if each else None
 
 
+def place(course: Autocorrelation) -> str:
+    """The order along which a sensor's course runs, or its wave, in words."""
+    if course.order.startswith("harmonic"):
+        return say("{wave}, in no known pattern", wave=course.order)
+    return say("smooth along {order}, in no known pattern", order=course.order)
+
+
 def structures(state: ExplainedSession) -> tuple[Structure, ...]:
     """Unexplained structure, with its place."""
     changed = [
@@ -130,7 +138,7 @@ def structures(state: ExplainedSession) -> tuple[Structure, ...]:
     ]
     courses = [
         Structure(
-            say("smooth along {order}, in no known pattern", order=course.order),
+            place(course),
             (state.names[course.sensor],),
             course.p_value,
             course.strength,

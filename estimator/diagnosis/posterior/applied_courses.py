@@ -29,6 +29,10 @@ LOWEST = 3
 """Harmonic of β from which on a wave is no cause of the catalogue: eccentricity, wobble and bearing are the others."""
 
 
+ALIKE = 0.1
+"""Share of a wave's size below which what a cause leaves of it tells them apart by nothing but luck."""
+
+
 class AppliedCourses(ColumnBlocks):
     """Courses of the applied vector, half of the prior on those of a kernel and half on waves."""
 
@@ -63,7 +67,16 @@ def waves(setting: Setting) -> Iterator[CourseHypothesis]:
     tried: list[tuple[str, Array]] = [
         (say("harmonic {shape} of β", shape=k), wave(setting.beta * k)) for k in range(LOWEST, HIGHEST + 1)
     ]
-    tried += [("the order measured", wave(2 * np.pi * k * place)) for k in range(1, setting.rows // 2)]
+    known = np.concatenate([wave(setting.beta * k) for k in range(1, LOWEST)], axis=1)
+    over_time = (wave(2 * np.pi * k * place) for k in range(1, setting.rows // 2))
+    tried += [("the order measured", columns) for columns in over_time if not is_in(known, columns)]
     for order, columns in tried:
         for part in components(setting)[:2]:
             yield CourseHypothesis(order, (part.words,), part.columns[..., None] * columns[:, None, :], columns[None])
+
+
+def is_in(known: Array, columns: Array) -> bool:
+    """Whether columns (R, q) lie in the span of those that are ``known`` (R, k), as waves over the session do that is
+    measured in even steps of β."""
+    left = columns - known @ np.linalg.lstsq(known, columns, rcond=None)[0]
+    return bool(np.linalg.norm(left) < ALIKE * np.linalg.norm(columns))

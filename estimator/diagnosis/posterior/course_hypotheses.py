@@ -12,12 +12,9 @@ import numpy as np
 
 from estimator.arrays import eigh
 from estimator.causes.contract import Setting
-from estimator.diagnosis.posterior.kernels import FAINT, LENGTHS, around, bending
+from estimator.diagnosis.posterior.kernels import FAINT, LENGTHS, ROUND, around, bending
 from estimator.message import say
 from estimator.session import ACCELEROMETER, Array
-
-ROUND = (0.4, 1.0, 2.5)
-"""Length, rad, over which a course in β keeps its value: some six harmonics, two, or little more than the first."""
 
 SIZE = "size"
 """The component that no turn of the applied vector makes."""

@@ -11,6 +11,7 @@ import numpy as np
 
 from estimator.arrays import eigh
 from estimator.causes.contract import Setting, varies
+from estimator.message import say
 from estimator.session import Array
 
 FEWEST = 6
@@ -134,7 +135,7 @@ def common_waves(setting: Setting) -> Iterator[tuple[str, Array]]:
     for order, place in common_orders(setting).items():
         by_time = clock(setting) if order == "the order measured" else None
         if order == "β":
-            yield from ((order, around_the_head) for around_the_head in harmonics(setting))
+            yield from harmonics(setting)
         else:
             yield from waves({order: place})
         if by_time is not None:
@@ -149,16 +150,17 @@ def waves(places: dict[str, Array]) -> Iterator[tuple[str, Array]]:
         yield from ((order, wave(2 * np.pi * k * place)) for k in periods)
 
 
-def harmonics(setting: Setting) -> Iterator[Array]:
-    """(R, 2) harmonics of β from the second on, alike in both runs or opposite."""
+def harmonics(setting: Setting) -> Iterator[tuple[str, Array]]:
+    """Harmonics of β, in words and as (R, 2), from the second on, alike in both runs or opposite."""
     assert setting.beta is not None
     assert setting.flipped is not None
     opposite = np.where(setting.flipped, -1.0, 1.0)[:, None]
     both = 0 < setting.flipped.sum() < setting.rows
     for k in range(2, HIGHEST + 1):
-        yield wave(setting.beta * k)
+        words, columns = say("harmonic {shape} of β", shape=k), wave(setting.beta * k)
+        yield words, columns
         if both:
-            yield wave(setting.beta * k) * opposite
+            yield words, columns * opposite
 
 
 def clock(setting: Setting) -> Array | None:

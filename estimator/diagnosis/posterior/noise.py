@@ -186,7 +186,7 @@ def with_tails(baseline: Baseline, terms: Sequence[Term]) -> OtherNoise | None:
             r = tailed.z * np.sqrt(tailed.variance / baseline.variance)
             weight = (nu + 1) / (nu + (r / scale) ** 2)
             if baseline.unstated.any():
-                scale = np.sqrt((weight * r**2).sum(axis=0) / np.maximum(tailed.freedom.sum(axis=0), 1e-300))
+                scale = np.sqrt((weight * r**2).sum(axis=0) / np.maximum(tailed.freedom.sum(axis=0), 1.0))
             scale = np.maximum(scale, FAINTEST)
             tailed = Remaining.of(replace(baseline, variance=baseline.variance * scale**2 / weight), named)
         sigma = np.sqrt(tailed.variance / baseline.variance)

@@ -57,8 +57,9 @@ class OwnCourses(ListedTerms):
         roots = np.zeros((len(courses), self.layout.R, max(L.shape[1] for _, L in courses)))
         for (_, L), whole in zip(courses, roots, strict=True):
             whole[:, : L.shape[1]] = L
-        share = np.array([USUAL[order] / orders.count(order) for order in orders])
-        share /= 2 * sum(USUAL[order] for order in set(orders))
+        usual = [order if order in USUAL else "β" for order in orders]
+        share = np.array([USUAL[order] / usual.count(order) for order in usual])
+        share /= 2 * sum(USUAL[order] for order in set(usual))
         return CourseFamily(i, orders, roots, np.log(OWN_COURSE / self.layout.m / len(SIZES) * share)[:, None])
 
     def weighed(self, info: InputInformation) -> Array:
