@@ -20,8 +20,8 @@ TEMPERATURE = ("single", (77, 3), "bias-temperature")
 """A5 follows the temperature, told apart from every rival by more than five standard errors."""
 ECCENTRIC = ("single", (77, 25), "beta-scale")
 UNEXPLAINED = ("outside", (5, 1), "fifth-harmonic")
-TWO_AT_ONCE = ("outside", (13, 7), None)
-"""G2 does something that no cause of the catalogue describes; two of them together do."""
+DOUBTED = ("two", (13, 34), None)
+"""A2 steps while the stand is not level; a course that nobody knows would explain the step almost as well."""
 ALIASES = ("single", (77, 0), "cubic-nonlinearity")
 
 

@@ -1,5 +1,6 @@
 """The likeliest set of terms: the best of adding, dropping or replacing, until nothing gains."""
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
@@ -13,6 +14,9 @@ GAIN = 0.1
 FEW = 2
 """Causes that are tried together before anything else: what takes more is rarely said by names alone."""
 
+
+REPEATS = 2
+"""Times that a cause may act at one place: two readings out of line, or two steps, are no third thing."""
 
 HOPELESS = 30.0
 """ln posterior odds by which terms may be behind that dropping and replacing can still make up."""
@@ -40,9 +44,10 @@ class Remainder:
         return found
 
     def best(self, kinds: Iterable[Kind]) -> PlaceCandidate | None:
-        """The likeliest one whose place is not taken."""
-        taken = {t.place for t in self.terms}
-        return max((c for c in self.candidates(kinds) if c.place not in taken), key=lambda c: c.value, default=None)
+        """The likeliest one whose place is not taken; a cause of the catalogue may act so often with other shapes."""
+        taken = Counter(t.place for t in self.terms)
+        free = (c for c in self.candidates(kinds) if taken[c.place] < (REPEATS if c.named else 1))
+        return max(free, key=lambda c: c.value, default=None)
 
 
 @dataclass(frozen=True, eq=False)

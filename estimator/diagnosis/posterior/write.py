@@ -42,6 +42,8 @@ def posterior(start: ExplainedSession) -> ExplainedSession:
     def residuals_of(baseline: Baseline) -> WhitenedResiduals:
         return start.residuals if baseline is start.baseline else restart_from(start, baseline).residuals
 
+    if start.residuals.freedom < 1:
+        return start  # every reading serves to estimate something
     catalogue = [c for c in start.catalogue if isinstance(c, Signature)]
     best, stated = solve(start.baseline, residuals_of, catalogue)
     state = written(start, best)

@@ -8,9 +8,9 @@ import pytest
 from tests.conftest import Holding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.diagnosed import (
+    DOUBTED,
     ECCENTRIC,
     TEMPERATURE,
-    TWO_AT_ONCE,
     UNEXPLAINED,
     diagnosis_of,
     drawn,
@@ -39,12 +39,10 @@ def test_an_unexplained_structure_raises_a_flag_on_the_unit(holding: Holding) ->
 
 
 def test_a_cause_that_an_unknown_one_may_be_raises_its_flag_with_the_doubt(holding: Holding) -> None:
-    client, id = held(holding, TWO_AT_ONCE)
-    assert ("cause", "G2", "raised") in flagged(client, id)
-    said = [flag["summary"] for flag in client.get("/api/v1/flags").json()["flags"] if flag["place"] == "G2"]
-    assert said == [
-        "Two causes at once, or a cause outside the catalogue (G2): cubic nonlinearity and scale asymmetry."
-    ]
+    client, id = held(holding, DOUBTED)
+    assert ("cause", "A2", "raised") in flagged(client, id)
+    said = [flag["summary"] for flag in client.get("/api/v1/flags").json()["flags"] if flag["place"] == "A2"]
+    assert said == ["The bias of A2 has one step, or possibly a cause outside the catalogue."]
 
 
 def test_what_all_sensors_show_is_a_matter_of_stand_or_fixture(holding: Holding) -> None:
@@ -55,7 +53,7 @@ def test_what_all_sensors_show_is_a_matter_of_stand_or_fixture(holding: Holding)
 
 
 def test_a_cause_that_nobody_knows_cannot_be_accepted(holding: Holding) -> None:
-    client, id = held(holding, TWO_AT_ONCE)
+    client, id = held(holding, DOUBTED)
     new = {"cause": "unexplained", "scope": "unit", "by": "K. Ito"}
     refused = client.post(f"/api/v1/sessions/{id}/diagnosis/accept", json=new)
     assert refused.status_code == 422
