@@ -15,8 +15,8 @@ FEW = 2
 """Causes that are tried together before anything else: what takes more is rarely said by names alone."""
 
 
-REPEATS = 2
-"""Times that a cause may act at one place: two readings out of line, or two steps, are no third thing."""
+REPEATS = 3
+"""Times that a cause may act at one place, each in a shape of its own: more of it is something else."""
 
 HOPELESS = 30.0
 """ln posterior odds by which terms may be behind that dropping and replacing can still make up."""
