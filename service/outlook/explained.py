@@ -92,9 +92,9 @@ def explains(found: Diagnosed) -> bool:
 
 def _is_shared(finding: Finding) -> bool:
     """Whether it is no sensor's own, whichever of the possible causes it is."""
-    possible = (finding.cause, *finding.alternatives)
-    if UNKNOWN_CAUSE in possible:
+    if finding.cause == UNKNOWN_CAUSE:
         return False
+    possible = (name for name in (finding.cause, *finding.alternatives) if name != UNKNOWN_CAUSE)
     are_shared = (name in OF_TEMPERATURE or cause(name).scope in SHARED_SCOPES for name in possible)
     return finding.shared is not None or all(are_shared)
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from estimator.causes.catalogue import UNEXPLAINED
 from estimator.causes.contract import Cause
 from estimator.causes.sensor import ExcessNoise
 from estimator.diagnosis.explanation.extended_model import Amplitudes
@@ -25,9 +26,6 @@ from estimator.diagnosis.residuals.remaining import remaining_of_sensors
 from estimator.diagnosis.results import Course, Finding, NoiseScale, Structure
 from estimator.message import joined, say
 from estimator.session import ACCELEROMETER, Array
-
-UNEXPLAINED = "unexplained"
-"""Alternative for an effect that may be none of the catalogue's causes."""
 
 BEYOND_NOISE = 30.0
 """Times the stated standard errors from which on scatter is no misjudged noise: stated ones were seen to be four to

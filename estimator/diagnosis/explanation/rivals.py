@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.special import logsumexp
 
+from estimator.causes.catalogue import UNEXPLAINED
 from estimator.diagnosis.explanation.extended_model import joint_amplitude
 from estimator.diagnosis.explanation.next_measurement import proposals
 from estimator.diagnosis.posterior.explained import Detection, ExplainedSession, Scored
@@ -110,8 +111,10 @@ def expected_separation(planned: Baseline, named: Scored, amplitude: Array, riva
 
 
 def ranking(state: ExplainedSession, detection: Detection) -> tuple[Rival, ...]:
-    """The strongest causes, as people see them."""
-    return tuple(
-        Rival(s.cause.identifier, tuple(state.names[i] for i in s.sensors), p, s.strength)
+    """The strongest causes, as people see them, and among them one outside the catalogue where it is possible."""
+    known = [
+        Rival(s.cause.identifier, tuple(state.names[i] for i in s.sensors), (1 - detection.unnamed) * p, s.strength)
         for s, p in probabilities(detection)[:SHOWN]
-    )
+    ]
+    unknown = [Rival(UNEXPLAINED, (), detection.unnamed, 0.0)] if detection.unnamed > 1 - CREDIBLE else []
+    return tuple(sorted((*known, *unknown), key=lambda rival: -rival.probability))

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from estimator.diagnosis.explanation.findings import UNEXPLAINED
+from estimator.causes.catalogue import UNEXPLAINED
 from estimator.diagnosis.results import Finding, Rival, Separation
 from estimator.message import joined, say
 from estimator.session import Array

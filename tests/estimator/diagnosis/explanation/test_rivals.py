@@ -5,9 +5,10 @@ from dataclasses import replace
 import pytest
 
 from estimator.causes import CATALOGUE, cause
+from estimator.causes.catalogue import UNEXPLAINED
 from estimator.diagnosis.diagnose import initial_state
 from estimator.diagnosis.explanation.extended_model import amplitudes
-from estimator.diagnosis.explanation.findings import UNEXPLAINED, excess_finding, findings, noise_cause
+from estimator.diagnosis.explanation.findings import excess_finding, findings, noise_cause
 from estimator.diagnosis.explanation.rivals import DISTINGUISHED, alternatives, separations
 from estimator.diagnosis.posterior.explained import ExcessVariance, ExplainedSession
 from estimator.diagnosis.posterior.write import posterior
