@@ -93,7 +93,7 @@ def seen_shapes(state: ExplainedSession) -> Iterator[SeenShapes]:
     residuals, setting = state.residuals, state.baseline.setting
     catalogue = [c for c in state.catalogue if isinstance(c, Signature)]
     info, _ = InputInformation.of(residuals)
-    single = SensorCauses(residuals, catalogue)
+    single, common = state.of_causes or (SensorCauses(residuals, catalogue), CommonCauses(residuals, catalogue))
     for block in single.blocks:
         A = info.A[np.ix_(block.index, block.index)]
         for part in block.parts:
@@ -103,12 +103,12 @@ def seen_shapes(state: ExplainedSession) -> Iterator[SeenShapes]:
                 largest, prior = float(block.sizes[-1]), part.log_prior - float(np.log(len(SIZES)))
                 scale = part.scale * left[:, None]
                 yield SeenShapes(part.cause.identifier, np.sqrt(np.maximum(square, 0.0)), scale, largest, prior)
-    for common in CommonCauses(residuals, catalogue).blocks:
-        assert common.effect is not None
-        square = ((info.A @ common.W) * common.W).sum(axis=0)[None]
-        prior = common.log_prior - float(np.log(len(SIZES)))
-        scale = common.effect.scale[None]
-        yield SeenShapes(common.place[0], np.sqrt(np.maximum(square, 0.0)), scale, float(SIZES[-1]), prior)
+    for columns in common.blocks:
+        assert columns.effect is not None
+        square = ((info.A @ columns.W) * columns.W).sum(axis=0)[None]
+        prior = columns.log_prior - float(np.log(len(SIZES)))
+        scale = columns.effect.scale[None]
+        yield SeenShapes(columns.place[0], np.sqrt(np.maximum(square, 0.0)), scale, float(SIZES[-1]), prior)
 
 
 def limit(state: ExplainedSession, cause: Cause, worst: Sequence[Array] | None) -> Limit:

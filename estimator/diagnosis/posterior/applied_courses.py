@@ -13,6 +13,7 @@ from estimator.arrays import eigh
 from estimator.causes.contract import Setting
 from estimator.diagnosis.posterior.blocks import ColumnBlocks, TermColumns
 from estimator.diagnosis.posterior.course_hypotheses import CourseHypothesis, components, hypotheses
+from estimator.diagnosis.posterior.information import InputInformation
 from estimator.diagnosis.posterior.kernels import HIGHEST, wave
 from estimator.diagnosis.posterior.layout import InputLayout
 from estimator.diagnosis.posterior.priors import COMMON_COURSE, SIZES
@@ -38,25 +39,27 @@ class AppliedCourses(ColumnBlocks):
 
     named = False
 
-    def __init__(self, residuals: WhitenedResiduals) -> None:
+    def __init__(self, residuals: WhitenedResiduals, start: InputInformation) -> None:
+        """``start``: the information with nothing found."""
         setting, layout = residuals.baseline.setting, InputLayout.of(residuals)
-        families = [list(hypotheses(setting)), list(waves(setting))]
-        blocks = []
-        for family in families:
-            shown = [h for h in family if np.any(h.columns)]
-            prior = float(np.log(COMMON_COURSE / len(families) / max(len(shown), 1)))
-            blocks += [block(residuals, layout, h, prior) for h in shown]
-        super().__init__(blocks, SIZES)
+        families = [[h for h in family if np.any(h.columns)] for family in (hypotheses(setting), waves(setting))]
+        courses = [h for family in families for h in family]
+        prior = [float(np.log(COMMON_COURSE / len(families) / len(family))) for family in families for _ in family]
+        columns = [layout.whole(h.columns) for h in courses]
+        ends = np.cumsum([W.shape[1] for W in columns])[:-1]
+        moved = np.split(start.A @ np.concatenate(columns, axis=1), ends, axis=1) if columns else []
+        each = zip(courses, columns, moved, prior, strict=True)
+        super().__init__([block(layout, h, W, W.T @ AW, p) for h, W, AW, p in each], SIZES)
 
 
-def block(residuals: WhitenedResiduals, layout: InputLayout, course: CourseHypothesis, log_prior: float) -> TermColumns:
-    """The columns of a course at a unit of size, directions that hardly show left out."""
+def block(layout: InputLayout, course: CourseHypothesis, W: Array, gram: Array, log_prior: float) -> TermColumns:
+    """The columns W (D, q) of a course at a unit of size, directions that hardly show by their ``gram`` W'AW left
+    out."""
     peak = (np.sqrt((course.columns**2).sum(axis=-1)) / layout.unit).max()
-    shown = residuals.trace(course.columns / peak)
-    size, turn = eigh(shown.T @ shown)
+    size, turn = eigh(gram)
     turn = turn[:, size > SEEN * size[-1]] / peak
     known = UnknownCourse(course.order, course.components, course.lift @ turn)
-    return TermColumns((COURSE, ()), layout.whole(course.columns @ turn), log_prior, course=known)
+    return TermColumns((COURSE, ()), W @ turn, log_prior, course=known)
 
 
 def waves(setting: Setting) -> Iterator[CourseHypothesis]:

@@ -32,7 +32,7 @@ class ColumnBlocks(ListedTerms):
         """``sizes`` (L,), in the unit of the columns."""
         self.blocks = tuple(sorted(blocks, key=lambda block: block.W.shape[1]))
         self.sizes = sizes
-        super().__init__([block.place for block in self.blocks for _ in sizes])
+        super().__init__([block.place for block in self.blocks], [len(sizes)] * len(self.blocks))
 
     def weighed(self, info: InputInformation) -> Array:
         if not self.blocks:

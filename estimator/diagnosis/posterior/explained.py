@@ -6,6 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from estimator.causes.contract import Cause, Setting, Shape, Signature
+from estimator.diagnosis.posterior.common_causes import CommonCauses
+from estimator.diagnosis.posterior.sensor_causes import SensorCauses
 from estimator.diagnosis.posterior.term import Place
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.between_sessions import parameter_change
@@ -178,6 +180,8 @@ class ExplainedSession:
     """Courses of the applied vector, common to all sensors, that no cause describes."""
     noise_claims: tuple[NoiseClaim, ...] = ()
     """Sensors whose stated noise is taken as known up to a factor only."""
+    of_causes: tuple[SensorCauses, CommonCauses] | None = None
+    """The catalogue's causes of one sensor and of all as they were sought; None where nothing was."""
     in_tails: tuple[Detection, ...] = ()
     """Names taken back, because readings far out in the tails of the errors explain as much."""
 

@@ -188,7 +188,10 @@ def with_tails(baseline: Baseline, terms: Sequence[Term]) -> OtherNoise | None:
             if baseline.unstated.any():
                 scale = np.sqrt((weight * r**2).sum(axis=0) / np.maximum(tailed.freedom.sum(axis=0), 1.0))
             scale = np.maximum(scale, FAINTEST)
-            tailed = Remaining.of(replace(baseline, variance=baseline.variance * scale**2 / weight), named)
+            before, variance = tailed.variance, baseline.variance * scale**2 / weight
+            tailed = Remaining.of(replace(baseline, variance=variance), named)
+            if np.abs(np.log(variance / before)).max() < STANDS:
+                break
         sigma = np.sqrt(tailed.variance / baseline.variance)
         r = tailed.z * sigma
         difference = float((log_t(r, nu, scale) - log_normal(r, sigma)).sum())

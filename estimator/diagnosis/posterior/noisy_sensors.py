@@ -20,7 +20,7 @@ class NoisySensors(ListedTerms):
         self.layout, self.sigma = InputLayout.of(residuals), np.sqrt(baseline.variance)
         odds = np.where(baseline.unstated, UNLIKE, NOISY / self.layout.m)
         self.log_prior = np.log(odds / len(NOISE_RATIOS))
-        super().__init__([(NOISE, (i,)) for i in range(self.layout.m) for _ in NOISE_RATIOS])
+        super().__init__([(NOISE, (i,)) for i in range(self.layout.m)], [len(NOISE_RATIOS)] * self.layout.m)
 
     def weighed(self, info: InputInformation) -> Array:
         R, m = self.layout.R, self.layout.m

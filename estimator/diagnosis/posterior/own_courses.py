@@ -48,8 +48,10 @@ class OwnCourses(ListedTerms):
             own = own_orders(setting, i)
             smooth_too = [(order, root(kernel)) for order, kernel in along_each(own)]
             self.families += [self.family(i, smooth + smooth_too), self.family(i, [*turning, *waves(own)])]
-        self.labels = [(family, k) for family in self.families for k in range(len(family.orders))]
-        super().__init__([(COURSE, (family.sensor,)) for family, _ in self.labels for _ in SIZES])
+        super().__init__(
+            [(COURSE, (family.sensor,)) for family in self.families],
+            [len(family.orders) * len(SIZES) for family in self.families],
+        )
 
     def family(self, i: int, courses: list[tuple[str, Array]]) -> CourseFamily:
         """Courses of sensor i by their orders and roots (R, r); those of an order share its prior."""
@@ -73,7 +75,8 @@ class OwnCourses(ListedTerms):
         return np.concatenate(values)
 
     def term(self, k: int) -> Term:
-        (family, number), level = self.labels[k // len(SIZES)], k % len(SIZES)
+        group, within = self.located(k)
+        family, (number, level) = self.families[group], divmod(within, len(SIZES))
         L = family.roots[number]
         L = L[:, np.abs(L).max(axis=0) > 0]
         variance = np.full(L.shape[1], (SIZES[level] * self.layout.unit[family.sensor]) ** 2)

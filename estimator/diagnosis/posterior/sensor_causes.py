@@ -68,8 +68,11 @@ class SensorCauses(ListedTerms):
         for part in parts:
             by_width.setdefault((part.sensor, part.rows.shape[2]), []).append(part)
         self.blocks = tuple(self.block(i, members) for (i, _), members in by_width.items())
-        self.labels = [(b, p, s) for b in self.blocks for p in b.parts for s in range(len(p.nonlinear))]
-        super().__init__([(p.cause.identifier, (p.sensor,)) for _, p, _ in self.labels for _ in range(len(SIZES))])
+        self.parts = [(b, p) for b in self.blocks for p in b.parts]
+        super().__init__(
+            [(p.cause.identifier, (p.sensor,)) for _, p in self.parts],
+            [len(p.nonlinear) * len(SIZES) for _, p in self.parts],
+        )
 
     def block(self, i: int, parts: Sequence[SensorShapes]) -> ShapeBlock:
         """The shapes of one width on sensor i."""
@@ -164,7 +167,8 @@ class SensorCauses(ListedTerms):
         return np.asarray(value + block.log_prior)
 
     def term(self, k: int) -> Term:
-        (block, part, s), level = self.labels[k // len(SIZES)], k % len(SIZES)
+        group, within = self.located(k)
+        (block, part), (s, level) = self.parts[group], divmod(within, len(SIZES))
         columns = np.zeros((self.layout.D, part.rows.shape[2]))
         columns[block.index] = part.rows[s]
         variance, mean = np.full(columns.shape[1], block.sizes[level] ** 2), None

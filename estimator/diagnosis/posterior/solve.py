@@ -61,6 +61,7 @@ class SessionTerms:
     T: Array
     """(n, D) whitened residuals by a change of the inputs."""
     single: SensorCauses
+    common: CommonCauses
     shared: SharedCauses
     model: TermModel
 
@@ -68,8 +69,9 @@ class SessionTerms:
     def of(cls, residuals: WhitenedResiduals, catalogue: Sequence[Signature], misfortunes: int = 0) -> "SessionTerms":
         """The kinds of a catalogue's causes, and those of everything else, where so many things happened besides."""
         causes = cls.of_causes(residuals, catalogue, misfortunes)
-        makers = (OwnCourses, NoisySensors, AppliedCourses, WanderingZeros, MovedParameters)
-        others = (*causes.model.of_others, *(make(residuals) for make in makers))
+        makers = (OwnCourses, NoisySensors, WanderingZeros, MovedParameters)
+        free = (*(make(residuals) for make in makers), AppliedCourses(residuals, causes.model.start))
+        others = (*causes.model.of_others, *free)
         return replace(causes, model=replace(causes.model, of_others=others))
 
     @classmethod
@@ -78,10 +80,10 @@ class SessionTerms:
     ) -> "SessionTerms":
         """The kinds of a catalogue's causes alone, of one sensor, of all and of several."""
         start, T = InputInformation.of(residuals)
-        single = SensorCauses(residuals, catalogue)
+        single, common = SensorCauses(residuals, catalogue), CommonCauses(residuals, catalogue)
         shared = SharedCauses(single)
-        of_causes, of_several = (single, CommonCauses(residuals, catalogue)), (shared, FreeShared(residuals))
-        return cls(residuals, T, single, shared, TermModel(start, of_causes, of_several, misfortunes))
+        model = TermModel(start, (single, common), (shared, FreeShared(residuals)), misfortunes)
+        return cls(residuals, T, single, common, shared, model)
 
 
 @dataclass(frozen=True, eq=False)

@@ -116,15 +116,17 @@ class Kind(ABC):
 
 
 class ListedTerms(Kind):
-    """A kind whose terms can be listed beforehand. K terms at J places."""
+    """A kind whose terms can be listed beforehand, group by group. K terms at J places."""
 
     named: ClassVar[bool] = True
     """Whether its terms are causes of the catalogue."""
 
-    def __init__(self, places: Sequence[Place]) -> None:
-        """``places`` of all K terms, those of one place anywhere."""
+    def __init__(self, places: Sequence[Place], counts: Sequence[int]) -> None:
+        """``places`` of the groups, the same one any number of times, and ``counts`` of their terms."""
         number: dict[Place, int] = {}
-        of_term = np.array([number.setdefault(place, len(number)) for place in places], dtype=int)
+        of_group = np.array([number.setdefault(place, len(number)) for place in places], dtype=int)
+        of_term = np.repeat(of_group, counts)
+        self.ends_of_groups = np.cumsum(counts)
         self.places = tuple(number)
         self.order = np.argsort(of_term, kind="stable")
         self.first = np.flatnonzero(np.diff(of_term[self.order], prepend=-1))
@@ -136,6 +138,11 @@ class ListedTerms(Kind):
     @abstractmethod
     def term(self, k: int) -> Term:
         """The k-th term."""
+
+    def located(self, k: int) -> tuple[int, int]:
+        """The group of the k-th term, and its number there."""
+        group = int(np.searchsorted(self.ends_of_groups, k, side="right"))
+        return group, k - (int(self.ends_of_groups[group - 1]) if group else 0)
 
     def candidates(self, info: InputInformation) -> list[PlaceCandidate]:
         if not self.places:

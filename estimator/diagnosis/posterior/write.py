@@ -56,13 +56,13 @@ def posterior(start: ExplainedSession) -> ExplainedSession:
 
 def written(start: ExplainedSession, solution: TermSolution) -> ExplainedSession:
     """A solution as findings are written from it."""
-    baseline = solution.session.residuals.baseline
-    state = start if baseline is start.baseline else restart_from(start, baseline)
     causes = [t for t in solution.terms if t.named]
     changes = [t for t in solution.terms if t.effect is not None and not t.named]
     courses = [t for t in solution.terms if t.name == COURSE]
     return replace(
-        state,
+        start,
+        residuals=solution.session.residuals,
+        of_causes=(solution.session.single, solution.session.common),
         detections=tuple(d for t in causes for d in detections(solution, t)),
         structures=tuple(d for t in changes for d in detections(solution, t)),
         excess=tuple(map(excess_of, solution.noisy)),
