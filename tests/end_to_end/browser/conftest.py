@@ -89,9 +89,12 @@ def site(sqlite: Databases, stock_of: StockOf) -> Iterator[Site]:
         yield Site(url, before[0], unfit, loose, swayed, aligned, flown)
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def chromium() -> Iterator[Browser]:
-    """An installed Chromium; without one the browser tests are skipped, but not where CI is set."""
+    """An installed Chromium; without one the browser tests are skipped, but not where CI is set.
+
+    Playwright's event loop counts as running until it is stopped: it must not outlive the tests that open pages.
+    """
     found = next(filter(None, map(shutil.which, NAMES)), None)
     if found is None:
         missing = pytest.fail if os.environ.get("CI") else pytest.skip
