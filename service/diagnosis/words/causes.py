@@ -94,7 +94,15 @@ def what_is_wrong(finding: Finding, findings: Sequence[Finding] = ()) -> str:
 
 
 def choice_of(finding: Finding) -> str:
-    """The causes that a finding leaves standing, in a clause: ``The bias of A3 drifts, or possibly warm up``."""
+    """The causes that a finding leaves standing, in a clause: ``The bias of A3 drifts, or possibly warm up``; of a lone
+    one its share, where that was kept."""
+    if is_lone(finding) and any(rival.cause == UNKNOWN_CAUSE for rival in finding.ranking):
+        return say(
+            "{cause} ({share} likely), or {one_not_known}",
+            cause=without_stop(finding.sentence),
+            share=share_of(finding.cause, finding),
+            one_not_known=ONE_NOT_KNOWN,
+        )
     others = (name for names in by_share(finding) for name in names if name != finding.cause)
     return say(
         "{cause}, or possibly {others}",
@@ -118,7 +126,7 @@ def is_level(finding: Finding) -> bool:
 
 
 def share_of(name: str, finding: Finding) -> str:
-    """``98 %``: of a cause on any sensors, among all known ones."""
+    """``98 %``: of a cause on any sensors, among all that are possible."""
     return percent(_share(name, finding))
 
 

@@ -68,7 +68,7 @@ def test_what_all_sensors_show_sends_people_to_the_stand(run: Run, tmp_path: Pat
 
 def test_a_name_beside_an_unknown_cause_keeps_its_advice(run: Run, tmp_path: Path) -> None:
     shown = run("diagnose", write(tmp_path, "a.json", drawn(DOUBTED).session)).out
-    assert "The bias of A2 has one step, or possibly a cause outside the catalogue." in shown
+    assert "The bias of A2 has one step (95.1\xa0% likely), or a cause outside the catalogue." in shown
     assert "If it appears again: " in shown
 
 

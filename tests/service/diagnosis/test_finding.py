@@ -62,6 +62,9 @@ def test_a_cause_that_this_version_does_not_know_is_called_by_its_identifier() -
 
 def test_that_no_known_cause_may_act_is_said() -> None:
     assert what_is_wrong(LONE) == "The zero of A1 and A2 jumped, or possibly a cause outside the catalogue."
+    ranking = (Rival("bias-jump", ("A1", "A2"), 0.97, 9.0), Rival("unexplained", (), 0.03, 0.0))
+    shared = "The zero of A1 and A2 jumped (97.0\u00a0% likely), or a cause outside the catalogue."
+    assert what_is_wrong(replace(LONE, ranking=ranking)) == shared
     many = replace(JUMP, alternatives=("warm-up", "bias-ramp", "hysteresis", "unexplained"), sensors=(), ranking=())
     listed = "bias jump, warm up, bias ramp, 1 more or a cause outside the catalogue"
     assert what_is_wrong(many) == f"Cannot tell which: {listed}."

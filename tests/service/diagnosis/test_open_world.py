@@ -54,7 +54,7 @@ def test_wrong_standard_errors_are_the_first_thing_said_where_nothing_else_is_wr
 
 def test_a_doubt_of_a_name_stands_beside_it_and_its_advice_waits(holding: Holding) -> None:
     text = unescape(page(*held(holding, DOUBTED)))
-    assert "The bias of A2 has one step, or possibly a cause outside the catalogue" in text
+    assert "The bias of A2 has one step (95.1\xa0% likely), or a cause outside the catalogue" in text
     assert "If it appears again:" in text
     assert 'value="unexplained"' not in text
 

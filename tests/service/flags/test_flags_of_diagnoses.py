@@ -42,7 +42,7 @@ def test_a_cause_that_an_unknown_one_may_be_raises_its_flag_with_the_doubt(holdi
     client, id = held(holding, DOUBTED)
     assert ("cause", "A2", "raised") in flagged(client, id)
     said = [flag["summary"] for flag in client.get("/api/v1/flags").json()["flags"] if flag["place"] == "A2"]
-    assert said == ["The bias of A2 has one step, or possibly a cause outside the catalogue."]
+    assert said == ["The bias of A2 has one step (95.1\xa0% likely), or a cause outside the catalogue."]
 
 
 def test_what_all_sensors_show_is_a_matter_of_stand_or_fixture(holding: Holding) -> None:

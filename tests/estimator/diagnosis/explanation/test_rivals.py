@@ -34,7 +34,10 @@ def test_a_course_of_no_name_is_an_alternative_while_it_is_likely(unnamed: float
     state = named("bias-ramp", 1.0)
     state = replace(state, detections=(replace(state.detections[0], unnamed=unnamed),))
     (finding,) = findings(state, amplitudes(state), [None])
+    shares = {rival.cause: rival.probability for rival in finding.ranking}
     assert (UNEXPLAINED in finding.alternatives) == listed
+    assert shares.get(UNEXPLAINED) == (unnamed if listed else None)
+    assert sum(rival.probability for rival in finding.ranking) == pytest.approx(1.0, abs=1e-2)
 
 
 @pytest.mark.parametrize("doubtful", [False, True])
