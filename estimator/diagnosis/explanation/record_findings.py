@@ -1,17 +1,19 @@
 """Findings about the record, corrected before the search: clipped channels, record errors, wrong entries."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from estimator.applied_vector import ONE_PLACE, common_factors
-from estimator.calibration.gross_slips import sentences
+from estimator.applied_vector import ONE_PLACE, STANDARD_GRAVITY, common_factors
+from estimator.calibration.gross_slips import UNKNOWN, sentences
+from estimator.causes.environment import BiasJump
 from estimator.causes.record import GravityEntry, SensorDrift
-from estimator.causes.sensor import ReadingOutlier
+from estimator.causes.sensor import ReadingOutlier, Saturation
 from estimator.diagnosis.explanation.naming import listed, merged, named_cause
 from estimator.diagnosis.explanation.rivals import CREDIBLE, SHOWN
 from estimator.diagnosis.explanation.temperature import shared
+from estimator.diagnosis.posterior.priors import SIZES, units
 from estimator.diagnosis.record.clipping import Clip
 from estimator.diagnosis.record.common_scale import CommonScale
 from estimator.diagnosis.record.implausible import ImplausibleAxes
@@ -44,14 +46,34 @@ def gross_findings(readings: Sequence[SetAside], session: CalibrationSession) ->
 def gross_finding(reading: SetAside, session: CalibrationSession) -> Finding:
     """Describes one reading that was set aside."""
     kinds = {sensor.name: sensor.kind for sensor in session.sensors}
+    possible = (OUTLIER.identifier, *alike_in_one_reading(reading, session))
     return replace(
         named_cause(OUTLIER, (reading.sensor,), 0.0, reading.strength),
         amplitude=(reading.size,),
         sigma=(reading.sigma,),
         units=("m/s²" if kinds[reading.sensor] == ACCELEROMETER else "rad/s",),
         nonlinear_each=({"row": float(reading.row)},),
-        ranking=(Rival(OUTLIER.identifier, (reading.sensor,), 1.0, reading.strength),),
+        alternatives=possible[1:],
+        ranking=tuple(Rival(name, (reading.sensor,), 1 / len(possible), reading.strength) for name in possible),
     )
+
+
+def alike_in_one_reading(reading: SetAside, session: CalibrationSession) -> Iterator[str]:
+    """The causes that one reading, whose slip is not known, shows exactly as an outlier does, each as likely.
+
+    A converter's limit holds a reading that is short of what was expected and still the sensor's outermost. A zero that
+    jumps, by no more than any may, before the last reading or after the first one shows in that reading alone.
+    """
+    if reading.slip != UNKNOWN or reading.suspects or reading.last_row > reading.row:
+        return
+    (i,) = (k for k, sensor in enumerate(session.sensors) if sensor.name == reading.sensor)
+    others = np.delete(session.readings[:, i], reading.row - 1)
+    outward = others.max() <= reading.reading < reading.expected
+    if outward or others.min() >= reading.reading > reading.expected:
+        yield Saturation.identifier
+    largest = SIZES[-1] * units((session.sensors[i].kind,), np.array([STANDARD_GRAVITY]))[0]
+    if reading.row in (1, len(session.readings)) and abs(reading.size) < largest:
+        yield BiasJump.identifier
 
 
 SCALED = (
