@@ -7,6 +7,7 @@ import numpy as np
 
 from estimator.applied_vector import ONE_PLACE, STANDARD_GRAVITY, common_factors
 from estimator.calibration.gross_slips import UNKNOWN, sentences
+from estimator.causes.catalogue import UNEXPLAINED
 from estimator.causes.environment import BiasJump
 from estimator.causes.record import GravityEntry, SensorDrift
 from estimator.causes.sensor import ReadingOutlier, Saturation
@@ -35,7 +36,9 @@ def gross_findings(readings: Sequence[SetAside], session: CalibrationSession) ->
     known = [r for r in readings if np.isfinite(r.size)]
     if not known:
         return ()
-    found = merged([(OUTLIER, gross_finding(r, session)) for r in known])
+    of_sensor = {r.sensor: [other for other in known if other.sensor == r.sensor] for r in known}
+    possible = {name: tuple(alike(of_one, session)) for name, of_one in of_sensor.items()}
+    found = merged([(OUTLIER, gross_finding(r, session, possible[r.sensor])) for r in known])
     advice = joined(" ", sentences(known))
     if all(r.last_row > r.row for r in known):
         stood = say("{sensors} stood still for several rows.", sensors=listed(found[0].sensors))
@@ -43,37 +46,43 @@ def gross_findings(readings: Sequence[SetAside], session: CalibrationSession) ->
     return tuple(replace(f, advice=advice) for f in found)
 
 
-def gross_finding(reading: SetAside, session: CalibrationSession) -> Finding:
-    """Describes one reading that was set aside."""
+def gross_finding(reading: SetAside, session: CalibrationSession, others: tuple[str, ...]) -> Finding:
+    """Describes one reading that was set aside, which ``others`` explain as well, each as likely."""
     kinds = {sensor.name: sensor.kind for sensor in session.sensors}
-    possible = (OUTLIER.identifier, *alike_in_one_reading(reading, session))
+    names = (OUTLIER.identifier, *others)
     return replace(
         named_cause(OUTLIER, (reading.sensor,), 0.0, reading.strength),
         amplitude=(reading.size,),
         sigma=(reading.sigma,),
         units=("m/s²" if kinds[reading.sensor] == ACCELEROMETER else "rad/s",),
         nonlinear_each=({"row": float(reading.row)},),
-        alternatives=possible[1:],
-        ranking=tuple(Rival(name, (reading.sensor,), 1 / len(possible), reading.strength) for name in possible),
+        alternatives=others,
+        ranking=tuple(Rival(name, (reading.sensor,), 1 / len(names), reading.strength) for name in names),
     )
 
 
-def alike_in_one_reading(reading: SetAside, session: CalibrationSession) -> Iterator[str]:
-    """The causes that one reading, whose slip is not known, shows exactly as an outlier does, each as likely.
+def alike(readings: Sequence[SetAside], session: CalibrationSession) -> Iterator[str]:
+    """The causes that show in the readings of one sensor that were set aside exactly as outliers do; none where their
+    slips are known.
 
-    A converter's limit holds a reading that is short of what was expected and still the sensor's outermost. A zero that
-    jumps, by no more than any may, before the last reading or after the first one shows in that reading alone.
+    A converter's limit holds readings that are short of what was expected and still the sensor's outermost. A zero that
+    jumps, by no more than any may, before the last readings or after the first ones shows in these alone. Two outliers
+    of one sensor are two misfortunes, for which there may be one cause that nobody knows.
     """
-    if reading.slip != UNKNOWN or reading.suspects or reading.last_row > reading.row:
+    if any(r.slip != UNKNOWN or r.suspects or r.last_row > r.row for r in readings):
         return
-    (i,) = (k for k, sensor in enumerate(session.sensors) if sensor.name == reading.sensor)
-    others = np.delete(session.readings[:, i], reading.row - 1)
-    outward = others.max() <= reading.reading < reading.expected
-    if outward or others.min() >= reading.reading > reading.expected:
+    rows, R = [r.row for r in readings], len(session.readings)
+    (i,) = (k for k, sensor in enumerate(session.sensors) if sensor.name == readings[0].sensor)
+    others = np.delete(session.readings[:, i], np.array(rows) - 1)
+    outward = all(others.max() <= r.reading < r.expected for r in readings)
+    if outward or all(others.min() >= r.reading > r.expected for r in readings):
         yield Saturation.identifier
     largest = SIZES[-1] * units((session.sensors[i].kind,), np.array([STANDARD_GRAVITY]))[0]
-    if reading.row in (1, len(session.readings)) and abs(reading.size) < largest:
+    ends = (list(range(1, len(rows) + 1)), list(range(R - len(rows) + 1, R + 1)))
+    if rows in ends and all(abs(r.size) < largest for r in readings):
         yield BiasJump.identifier
+    if len(readings) > 1:
+        yield UNEXPLAINED
 
 
 SCALED = (

@@ -33,7 +33,10 @@ STANDS = 0.01
 """Relative change of a variance at which it stands."""
 
 FEWEST = 6.0
-"""Degrees of freedom of a kind's residuals from which on they tell a scale."""
+"""Degrees of freedom of residuals, of a kind or of one sensor, from which on they tell a scale."""
+
+ALONE = 2.0
+"""Degrees of freedom of one sensor's residuals below which they tell nothing of its noise: what acts took them all."""
 
 FREEDOMS = (3.0, 5.0, 8.0)
 """ν of tails: below three errors have hardly a variance, and far beyond eight they are as good as normal."""
@@ -78,11 +81,12 @@ def beside(baseline: Baseline, named: Array | None) -> Baseline:
     its own, as the others of its kind suggest it."""
     variance = baseline.variance
     for _ in range(ROUNDS):
-        energy, freedom = remaining_of_sensors(WhitenedResiduals.of(replace(baseline, variance=variance)), named)
+        energy, left = remaining_of_sensors(WhitenedResiduals.of(replace(baseline, variance=variance)), named)
         value = np.median(variance, axis=0)
-        expected = typical_of(baseline, value * energy / np.maximum(freedom, 1.0)) / value
-        energy, freedom = with_the_others(energy, freedom, np.where(baseline.unstated, expected, np.nan))
-        ratio = np.where(baseline.unstated, energy / np.maximum(freedom, 1.0), 1.0)
+        expected = typical_of(baseline, value * energy / np.maximum(left, 1.0)) / value
+        energy, freedom = with_the_others(energy, left, np.where(baseline.unstated, expected, np.nan))
+        told = baseline.unstated & (left >= ALONE)
+        ratio = np.where(told, energy / np.maximum(freedom, 1.0), 1.0)
         variance = variance * ratio
         if np.abs(np.log(ratio)).max() < STANDS:
             break
@@ -185,8 +189,9 @@ def with_tails(baseline: Baseline, terms: Sequence[Term]) -> OtherNoise | None:
         for _ in range(ROUNDS):
             r = tailed.z * np.sqrt(tailed.variance / baseline.variance)
             weight = (nu + 1) / (nu + (r / scale) ** 2)
-            if baseline.unstated.any():
-                scale = np.sqrt((weight * r**2).sum(axis=0) / np.maximum(tailed.freedom.sum(axis=0), 1.0))
+            free = tailed.freedom.sum(axis=0)
+            told = np.sqrt((weight * r**2).sum(axis=0) / np.maximum(free, FEWEST))
+            scale = np.where(baseline.unstated & (free >= FEWEST), told, scale)
             scale = np.maximum(scale, FAINTEST)
             before, variance = tailed.variance, baseline.variance * scale**2 / weight
             tailed = Remaining.of(replace(baseline, variance=variance), named)

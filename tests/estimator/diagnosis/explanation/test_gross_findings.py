@@ -13,11 +13,11 @@ NEXT = float(np.sort(SOUND)[-1] - np.sort(SOUND)[-2])
 INSIDE = next(row for row in range(1, ROWS - 1) if row not in (HIGHEST, LOWEST))
 
 
-def possible(row: int, off: float) -> tuple[str, ...]:
-    """The causes that a session leaves open whose reading in a row, counted from 0, is off by so much, in standard
-    errors."""
+def possible(rows: int | list[int], off: float) -> tuple[str, ...]:
+    """The causes that a session leaves open whose readings in some rows, counted from 0, are off by so much, in
+    standard errors."""
     course = np.zeros(ROWS)
-    course[row] = off
+    course[rows] = off
     (finding,) = diagnose(measured(on_sensor(course))).findings
     assert sum(rival.probability for rival in finding.ranking) == pytest.approx(1.0)
     return (finding.cause, *finding.alternatives)
@@ -43,3 +43,7 @@ def test_the_outermost_reading_may_be_clipped_where_it_falls_short(row: int, off
 def test_what_others_exceed_is_no_limit() -> None:
     far = 2 * NEXT / 3e-6
     assert "saturation" not in possible(HIGHEST, -far)
+
+
+def test_two_outliers_of_one_sensor_may_have_one_cause_that_nobody_knows() -> None:
+    assert possible([INSIDE, INSIDE + 6], 300.0) == ("reading-outlier", "unexplained")
