@@ -35,7 +35,7 @@ STANDS = 0.01
 FEWEST = 6.0
 """Degrees of freedom of residuals, of a kind or of one sensor, from which on they tell a scale."""
 
-ALONE = 2.0
+ALONE = 0.5
 """Degrees of freedom of one sensor's residuals below which they tell nothing of its noise: what acts took them all."""
 
 FREEDOMS = (3.0, 5.0, 8.0)
@@ -94,14 +94,16 @@ def beside(baseline: Baseline, named: Array | None) -> Baseline:
 
 
 def of_noisy_sensors(baseline: Baseline, terms: Sequence[Term]) -> Baseline | None:
-    """The baseline with the noise of sensors that are noisier than stated as it is, by their own readings; None where
-    there are none."""
+    """The baseline with the noise of sensors that are noisier than stated as it is, by their own readings, and no less
+    than stated; None where there are none."""
     noisy = [t.sensors[0] for t in terms if t.name == NOISE and not baseline.unstated[t.sensors[0]]]
     if not noisy:
         return None
     own = baseline.unstated.copy()
     own[noisy] = True
-    return beside(replace(baseline, unstated=own), columns_of(baseline, terms))
+    found = beside(replace(baseline, unstated=own), columns_of(baseline, terms))
+    least = np.where(baseline.unstated, 0.0, baseline.variance)
+    return refitted(replace(found, variance=np.maximum(found.variance, least)))
 
 
 @dataclass(frozen=True, eq=False)
