@@ -11,16 +11,20 @@ from tests.blind.cases import LEFT_OUT
 from tests.blind.catalogue import CATALOGUE
 from tests.blind.score import FAR, Outcome
 
+SCREENED = "reading-outlier"
+"""The cause that is named whatever the catalogue holds: one reading far off is set aside before any cause is sought."""
+
 INTRODUCTION = (
-    "Every cause of the catalogue in turn is hidden at a strength of 40 standard errors and looked for with a "
-    "catalogue that lacks it. Where no other explanation comes within 10 standard errors of it, the right answer is "
-    "`unexplained`."
+    "Every cause of the catalogue but `reading-outlier`, which is found before any other is sought, is hidden in turn "
+    "at a strength of 40 standard errors and looked for with a catalogue that lacks it. Where no other explanation "
+    "comes within 10 standard errors of it, the right answer is `unexplained`."
 )
 
 
 def tasks(sessions: int, seed: int) -> list[Task]:
-    """The whole catalogue in turn."""
-    return [Task(LEFT_OUT, (seed, i), cause) for i, cause in enumerate(islice(cycle(CATALOGUE), sessions))]
+    """The whole catalogue in turn, but what is screened."""
+    every = enumerate(islice(cycle(CATALOGUE), sessions))
+    return [Task(LEFT_OUT, (seed, i), cause) for i, cause in every if cause != SCREENED]
 
 
 def far(outcomes: list[Outcome]) -> list[Outcome]:
