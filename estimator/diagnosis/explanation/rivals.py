@@ -17,7 +17,7 @@ from estimator.session import Array
 
 CREDIBLE = 0.995
 """Share of the probability that the named cause and its alternatives hold together: a true cause is then missing from
-the list in one session of two hundred; the study measures 0.4 % (docs/diagnosis/study.md)."""
+the list in one session of two hundred."""
 
 DISTINGUISHED = 5.0
 """Separation, standard errors, at which two causes are distinguished: a likelihood ratio of e^12.5, beyond what the
