@@ -109,9 +109,11 @@ def _doubt(findings: Iterable[Finding]) -> float:
 
 
 def _probability(finding: Finding) -> float:
-    """Probability of the named cause among the possible ones; if the ranking lacks it, all are equally likely."""
+    """Probability of the named cause among the possible ones; all are equally likely if the ranking lacks it, or lacks
+    the unknown one, as diagnoses of earlier versions do."""
     if not finding.alternatives:
         return 1.0
     ranked = {rival.cause: rival.probability for rival in reversed(finding.ranking)}
     possible = [ranked.get(name, 0.0) for name in (finding.cause, *finding.alternatives)]
-    return possible[0] / sum(possible) if possible[0] > 0 else 1 / len(possible)
+    is_complete = UNKNOWN_CAUSE in ranked or UNKNOWN_CAUSE not in finding.alternatives
+    return possible[0] / sum(possible) if is_complete and possible[0] > 0 else 1 / len(possible)

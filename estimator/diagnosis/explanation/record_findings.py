@@ -36,9 +36,10 @@ def gross_findings(readings: Sequence[SetAside], session: CalibrationSession) ->
     known = [r for r in readings if np.isfinite(r.size)]
     if not known:
         return ()
-    of_sensor = {r.sensor: [other for other in known if other.sensor == r.sensor] for r in known}
-    possible = {name: tuple(alike(of_one, session)) for name, of_one in of_sensor.items()}
-    found = merged([(OUTLIER, gross_finding(r, session, possible[r.sensor])) for r in known])
+    sensors = dict.fromkeys(r.sensor for r in known)
+    possible = [tuple(alike([r for r in known if r.sensor == sensor], session)) for sensor in sensors]
+    of_all = tuple(name for name in possible[0] if all(name in others for others in possible))
+    found = merged([(OUTLIER, gross_finding(r, session, of_all)) for r in known])
     advice = joined(" ", sentences(known))
     if all(r.last_row > r.row for r in known):
         stood = say("{sensors} stood still for several rows.", sensors=listed(found[0].sensors))

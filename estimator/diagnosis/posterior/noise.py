@@ -85,8 +85,8 @@ def beside(baseline: Baseline, named: Array | None) -> Baseline:
         value = np.median(variance, axis=0)
         expected = typical_of(baseline, value * energy / np.maximum(left, 1.0)) / value
         energy, freedom = with_the_others(energy, left, np.where(baseline.unstated, expected, np.nan))
-        told = baseline.unstated & (left >= ALONE)
-        ratio = np.where(told, energy / np.maximum(freedom, 1.0), 1.0)
+        estimable = baseline.unstated & (left >= ALONE)
+        ratio = np.where(estimable, energy / np.maximum(freedom, 1.0), 1.0)
         variance = variance * ratio
         if np.abs(np.log(ratio)).max() < STANDS:
             break
@@ -192,8 +192,8 @@ def with_tails(baseline: Baseline, terms: Sequence[Term]) -> OtherNoise | None:
             r = tailed.z * np.sqrt(tailed.variance / baseline.variance)
             weight = (nu + 1) / (nu + (r / scale) ** 2)
             free = tailed.freedom.sum(axis=0)
-            told = np.sqrt((weight * r**2).sum(axis=0) / np.maximum(free, FEWEST))
-            scale = np.where(baseline.unstated & (free >= FEWEST), told, scale)
+            estimate = np.sqrt((weight * r**2).sum(axis=0) / np.maximum(free, FEWEST))
+            scale = np.where(baseline.unstated & (free >= FEWEST), estimate, scale)
             scale = np.maximum(scale, FAINTEST)
             before, variance = tailed.variance, baseline.variance * scale**2 / weight
             tailed = Remaining.of(replace(baseline, variance=variance), named)

@@ -7,12 +7,15 @@ from functools import cache
 import numpy as np
 import pytest
 
+from estimator.diagnosis import Finding
+from estimator.diagnosis.results import Rival
 from estimator.reading import read_session
 from estimator.writing import session_document
 from service.demo.blocks import DemoEffect, with_effect
 from service.flags.records import Matter
 from service.flags.store import FlagQuery, Flags
 from service.outlook.changes import known_of
+from service.outlook.explained import _probability
 from service.outlook.reading import outlook_of
 from service.outlook.records import UnitOutlook
 from service.records.diagnose import diagnose
@@ -97,3 +100,13 @@ def test_a_sensor_that_jumps_while_the_stand_is_at_fault_is_flagged_with_its_own
     assert (change.kind, change.after.month, change.before.month) == ("jump", SOUND[-1], OFF)
     assert change.size == pytest.approx(40 * MICRO_G, abs=3 * change.sigma)
     assert all(t.sensor == "A3" for t in outlook(storage).trends if t.changes)
+
+
+@pytest.mark.parametrize(("share", "probability"), [(0.02, 0.98), (None, 0.5)])
+def test_a_cause_beside_an_unknown_one_is_as_likely_as_its_ranking_says_or_else_as_the_other(
+    share: float | None, probability: float
+) -> None:
+    ranking = [Rival("remount-rotation", (), 1 - (share or 0.0), 9.0)]
+    ranking += [] if share is None else [Rival("unexplained", (), share, 0.0)]
+    finding = Finding("remount-rotation", "", "", (), 0.0, 9.0, alternatives=("unexplained",), ranking=tuple(ranking))
+    assert _probability(finding) == pytest.approx(probability)

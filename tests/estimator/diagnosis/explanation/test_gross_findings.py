@@ -1,4 +1,4 @@
-"""What else one reading that was set aside may come from."""
+"""Causes that explain a reading that was set aside as well as an outlier does."""
 
 import numpy as np
 import pytest
@@ -47,3 +47,12 @@ def test_what_others_exceed_is_no_limit() -> None:
 
 def test_two_outliers_of_one_sensor_may_have_one_cause_that_nobody_knows() -> None:
     assert possible([INSIDE, INSIDE + 6], 300.0) == ("reading-outlier", "unexplained")
+
+
+def test_what_explains_one_sensor_alone_is_no_alternative_of_two() -> None:
+    course = np.zeros(ROWS)
+    course[[INSIDE, INSIDE + 6]] = 300.0
+    other = np.zeros(ROWS)
+    other[INSIDE + 3] = 300.0
+    (finding,) = diagnose(measured(on_sensor(course) + on_sensor(other, SENSOR + 1))).findings
+    assert (finding.alternatives, [rival.cause for rival in finding.ranking]) == ((), ["reading-outlier"])
