@@ -43,20 +43,16 @@ class AppliedCourses(ColumnBlocks):
         """``start``: the information with nothing found."""
         setting, layout = residuals.baseline.setting, InputLayout.of(residuals)
         families = [[h for h in family if np.any(h.columns)] for family in (hypotheses(setting), waves(setting))]
-        courses = [h for family in families for h in family]
-        prior = [float(np.log(COMMON_COURSE / len(families) / len(family))) for family in families for _ in family]
-        columns = [layout.whole(h.columns) for h in courses]
-        ends = np.cumsum([W.shape[1] for W in columns])[:-1]
-        moved = np.split(start.A @ np.concatenate(columns, axis=1), ends, axis=1) if columns else []
-        each = zip(courses, columns, moved, prior, strict=True)
-        super().__init__([block(layout, h, W, W.T @ AW, p) for h, W, AW, p in each], SIZES)
+        prior = [float(np.log(COMMON_COURSE / len(families) / max(len(family), 1))) for family in families]
+        blocks = (block(layout, start, h, p) for family, p in zip(families, prior, strict=True) for h in family)
+        super().__init__(list(blocks), SIZES)
 
 
-def block(layout: InputLayout, course: CourseHypothesis, W: Array, gram: Array, log_prior: float) -> TermColumns:
-    """The columns W (D, q) of a course at a unit of size, directions that hardly show by their ``gram`` W'AW left
-    out."""
+def block(layout: InputLayout, start: InputInformation, course: CourseHypothesis, log_prior: float) -> TermColumns:
+    """The columns of a course at a unit of size, directions that hardly show left out."""
+    W = layout.whole(course.columns)
     peak = (np.sqrt((course.columns**2).sum(axis=-1)) / layout.unit).max()
-    size, turn = eigh(gram)
+    size, turn = eigh(W.T @ (start.A @ W))
     turn = turn[:, size > SEEN * size[-1]] / peak
     known = UnknownCourse(course.order, course.components, course.lift @ turn)
     return TermColumns((COURSE, ()), W @ turn, log_prior, course=known)
