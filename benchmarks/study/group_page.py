@@ -31,18 +31,20 @@ The same units on another stand separate two levels that explain alike.
 
 ## When a name is given
 
-Evidence is counted in *e-values*, valid however often one looks: their mean over all causes, places, shapes and three
-forms (same in every session, varying, since some session) reaches 100 in at most one group of a hundred without an
-effect. A name must also hold without the session that shows it most, make held-out sessions likelier, and leave only
-noise.
+One model explains all sessions: z of a session is the sum of the columns of its terms times their amplitudes, and
+noise. A term is a cause, or a wave without a name, at a place; its amplitude is the *same* in all sessions, *varying*,
+or there *since* one of them. Amplitudes have normal priors of 0.5, 2 and 8 standard errors of the first session that
+sees them, so that the evidence follows from U and F alone ([constants and reasons](../../estimator/groups/priors.py)).
 
-A name is weighed at its place against some two hundred empirical terms (products of input, its size, sign and powers,
-cross-axis input, temperature, its square, rate and lag, time, waves of β, the row before) that no cause describes:
-
-* Terms at least 20 times as likely, or as certain as the name, withdraw it: *unexplained*, with their equation.
-* Terms within 200 to 1, or different sizes in different sessions (the form `varying`, or Cochran's test at 1 %), put
-  `unexplained` among its alternatives.
-* Every further name on one sensor costs ln 100.
+* The likeliest term joins while the *e-value* of all of them reaches 100: valid however often one looks, it does so in
+  at most one group of a hundred without an effect. Each is weighed again given the others.
+* A term holds without any one session; on a type or a stand without any one unit. What one shows by itself is left
+  free there.
+* At its place a name is held against an unknown course: few terms of a library of two hundred that no single cause
+  describes (products of input, its size, sign and powers, cross-axis input, temperature, its square, rate and lag,
+  time, waves of β, the row before), with odds of one in six. Where the course is likelier the names are withdrawn:
+  *unexplained*, with its equation. From a probability of 0.5 %, or where sessions differ in size (`varying`, or
+  Cochran's test at 1 %), `unexplained` is among the alternatives.
 
 ## What an answer holds
 
@@ -113,10 +115,8 @@ Record causes, outliers, jumps, clipping and excess noise belong to their sessio
 [parameters between sessions](../decisions/residuals-alone.md). Of two similar effects on one stand one may take the
 name of both.
 
-Effects of one sensor drawn from a hidden grammar of products, strength 6 in each of ten sessions (`python -m
-benchmarks.study.groups --groups 26 --seed 31 --part grammar`): a name without `unexplained` in 0.0 % (0.0–6.9) of 52.
-Nearest to fail: odd powers of the input within 4 standard errors of
-`cubic-nonlinearity`, and products with temperature that resemble `scale-temperature`.
+Nearest to fail outside the catalogue: odd powers of the input within 4 standard errors of `cubic-nonlinearity`, and
+products with temperature that resemble `scale-temperature`; beside one of two effects on one sensor, sums of terms.
 """
 
 SHOWN = 4

@@ -29,8 +29,12 @@ from estimator import (
     read_session,
     statistics_of,
 )
-from estimator.groups.evidence import ALPHA
-from estimator.groups.terms import HELD_OUT, learn, libraries
+from estimator.calibration.calibrate import averaged
+from estimator.diagnosis.residuals.flipped_run import with_its_flip
+from estimator.diagnosis.residuals.whitened import WhitenedResiduals
+from estimator.groups.fixed import EMPIRICAL, FixedEffect, added_by
+from estimator.groups.learned import HELD_OUT
+from estimator.groups.priors import ALPHA
 from tests.blind.group_score import score
 from tests.blind.groups import OF_GRAMMAR, OUTSIDE, Group, draw_group
 from tests.blind.physics import mean_readings
@@ -110,23 +114,21 @@ def prediction(group: Group, sessions: list[CalibrationSession], found: GroupDia
     """Correlation of learned terms with the noise-free effect in the sessions left out of their fit, and the share
     explained.
     """
-    held = [k for k in range(len(sessions)) if k % HELD_OUT == HELD_OUT - 1]
-    truth, told = [], []
-    for k in held:
-        one = libraries([sessions[k]], "")[0]
+    truth, said = [], []
+    for k in range(HELD_OUT - 1, len(sessions), HELD_OUT):
+        residuals = WhitenedResiduals.of(with_its_flip(averaged(sessions[k])))
         world, effects = group.worlds[k], group.effects[k]
         change = (mean_readings(world, effects) - mean_readings(world)) / world.unit.scale
-        truth.append(one.residuals.trace(change[..., None])[:, 0])
-        told.append(np.zeros_like(truth[-1]))
-    for term in found.terms:
-        (sensor,) = term.sensors or ("",)
-        own = [k for k, w in enumerate(group.worlds) if term.subject in (w.unit.name, "BT", w.stand.id)]
-        whole = dict(zip(own, libraries([sessions[k] for k in own], sensor), strict=True))
-        learned = learn(sensor, list(whole.values()))
-        for number, k in enumerate(held):
-            if learned is not None and k in whole:
-                told[number] += whole[k].residuals.trace(learned.predicted(whole[k])[..., None])[:, 0]
-    x, y = np.concatenate(truth), np.concatenate(told)
+        truth.append(residuals.trace(change[..., None])[:, 0])
+        learned = [
+            FixedEffect(EMPIRICAL, t.sensors, "", t.amplitude, t.sigma, None, False, t.words)
+            for t in found.terms
+            if t.subject in sessions[k].subjects
+        ]
+        added = added_by(residuals.baseline, learned, ())
+        effect = np.zeros_like(change) if added is None else added.columns @ added.amplitude
+        said.append(residuals.trace(effect[..., None])[:, 0])
+    x, y = np.concatenate(truth), np.concatenate(said)
     size = float(x @ x)
     if not size:
         return {}

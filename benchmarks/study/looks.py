@@ -4,19 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from estimator.groups.evidence import (
-    FORMS,
-    SAME,
-    SINCE,
-    VARYING,
-    beginnings,
-    first_seen,
-    log_bayes,
-    log_sum,
-    log_varying,
-)
-from estimator.groups.layout import UNIT, GroupLayout
-from estimator.groups.pool import Pool, PoolMoments, pooled
+from estimator.groups.evidence import beginnings, first_seen, log_bayes, log_sum, log_varying
+from estimator.groups.layout import pool_in
+from estimator.groups.pool import PoolMoments
+from estimator.groups.priors import FORMS, SAME, SINCE, UNIT, VARYING
 from estimator.groups.scores import batch
 from estimator.groups.statistics import SessionStatistics
 from estimator.session import Array
@@ -24,21 +15,22 @@ from estimator.session import Array
 
 def e_process(statistics: Sequence[SessionStatistics], level: str = UNIT) -> Array:
     """(n,) ln of the group's e-value after each of n sessions, oldest first, nothing found before."""
-    layout = GroupLayout.of(statistics, level)
-    pool = pooled(layout)
-    scale = scales(layout, pool)
-    looks = [_looks(pool, w, m, scale) for w, m in pool.moments.items()]
-    prior = sum(float(np.exp(p).sum()) for p in layout.log_prior.values())
+    pool = pool_in(statistics, level, np.ones(len(statistics)))
+    moments = pool.given().moments
+    scale = scales(statistics, moments)
+    named = {w: np.array([not h.nameless for h in table], bool) for w, table in pool.hypotheses.items()}
+    looks = [_looks(m, pool.log_prior[w], named[w], scale) for w, m in moments.items()]
+    prior = sum(float(np.exp(p[named[w]]).sum()) for w, p in pool.log_prior.items())
     rest = np.full((len(statistics), 1), np.log1p(-prior) if prior < 1 else -np.inf)
     return log_sum(np.concatenate([*looks, rest], axis=1).T)
 
 
-def scales(layout: GroupLayout, pool: Pool) -> Array:
+def scales(statistics: Sequence[SessionStatistics], moments: dict[int, PoolMoments]) -> Array:
     """(n,) at least 1: by how much the sessions so far scatter more than stated, their largest effect taken out."""
-    energy = np.cumsum([p.statistics.energy.sum() for p in layout.parts])
-    freedom = np.cumsum([p.statistics.freedom.sum() for p in layout.parts])
+    energy = np.cumsum([s.energy.sum() for s in statistics])
+    freedom = np.cumsum([s.freedom.sum() for s in statistics])
     largest = np.zeros(len(energy))
-    for m in pool.moments.values():
+    for m in moments.values():
         U, F = m.U.cumsum(axis=0), m.F.cumsum(axis=0)
         n, H, w = U.shape
         statistic, _ = batch(U.reshape(n * H, w), F.reshape(n * H, w, w))
@@ -46,12 +38,10 @@ def scales(layout: GroupLayout, pool: Pool) -> Array:
     return np.maximum(1.0, (energy - largest) / freedom)
 
 
-def _looks(pool: Pool, w: int, m: PoolMoments, scale: Array) -> Array:
-    """(n, 3 H) ln of what every hypothesis of a width in every form adds to the e-value after each session."""
-    log_prior = pool.layout.log_prior[w]
-    named = np.isfinite(log_prior)
-    U, F = m.evidence[:, named], m.F[:, named]
-    n, H = U.shape[:2]
+def _looks(m: PoolMoments, log_prior: Array, named: Array, scale: Array) -> Array:
+    """(n, 3 H) ln of what every name of a width in every form adds to the e-value after each session."""
+    U, F = (m.U * m.shrink)[:, named], m.F[:, named]
+    n, H, w = U.shape
     by = scale[:, None]
     first = first_seen(F)
     seen_U, seen_F = U.cumsum(axis=0) / by[..., None], F.cumsum(axis=0) / by[..., None, None]

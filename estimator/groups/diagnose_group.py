@@ -1,31 +1,32 @@
 """Diagnosis of the sessions of a unit, a unit type or a stand together, where no single session shows enough.
 
-statistics → layout → evidence → selection → findings
+statistics → pool → search → course → findings
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from estimator.causes.catalogue import cause
 from estimator.diagnosis.explanation.naming import side_by_side
-from estimator.groups.findings import LARGEST, Estimated, estimated, finding_of, structures
-from estimator.groups.gain import gain_of, names_that_predict
-from estimator.groups.lack_of_fit import LackOfFitGroup, names_that_fit
-from estimator.groups.layout import EVERY, LEVELS, STAND, TYPE, UNIT, GroupLayout
+from estimator.groups.course import AnsweredGroup, answered
+from estimator.groups.findings import LARGEST, effect_of, finding_of, structures
+from estimator.groups.gain import gain_of
+from estimator.groups.layout import pool_of
+from estimator.groups.learned import learned_terms
 from estimator.groups.limits import limits
 from estimator.groups.pictures import pictures
-from estimator.groups.place import Where
-from estimator.groups.pool import PoolModel, pooled
-from estimator.groups.results import EmpiricalTerm, GroupDiagnosis, GroupFinding
-from estimator.groups.selection import GroupSelection, select
+from estimator.groups.priors import LEVELS, STAND, TYPE, UNIT
+from estimator.groups.results import GroupDiagnosis, GroupFinding
 from estimator.groups.separation import Separator
 from estimator.groups.session_statistics import statistics_of
 from estimator.groups.statistics import SessionStatistics
-from estimator.groups.terms import Library, learn, shown
 from estimator.message import joined, say
 from estimator.session import CALIBRATIONS, CalibrationSession
+
+NOTED = 1.5
+"""Times the stated variance from which on readers are told how much the sessions scatter."""
 
 
 def diagnose_group(sessions: Sequence[CalibrationSession], level: str = UNIT) -> GroupDiagnosis:
@@ -62,14 +63,11 @@ def diagnose_statistics(
         raise ValueError(say("a group is one of {levels}, not {level}", levels=joined(", ", LEVELS), level=level))
     if not statistics:
         raise ValueError("a group needs a session that calibrates a block")
-    layout = GroupLayout.of(statistics, level)
-    selection = names_that_predict(select(layout))
-    group = LackOfFitGroup(selection, tuple(sessions))
-    selection = names_that_fit(group)
-    effects = [estimated(selection, f) for f in selection.found]
+    answer = answered(pool_of(statistics, level), statistics, sessions)
+    model = answer.model
+    effects = [effect_of(answer, term) for term in model.named]
     separator = Separator(tuple(sessions))
-    found = [finding_of(selection, effect, separator.measurements(selection, effect)) for effect in effects]
-    scale = selection.weighed()
+    found = [finding_of(answer, effect, separator.measurements(effect)) for effect in effects]
     whole = merged(found)
     drawn = pictures(whole, sessions) if sessions else [None] * len(whole)
     return GroupDiagnosis(
@@ -79,32 +77,13 @@ def diagnose_statistics(
         first=statistics[0].started_at,
         last=statistics[-1].started_at,
         findings=tuple(replace(f, picture=picture) for f, picture in zip(whole, drawn, strict=True)),
-        terms=tuple(learned_terms(selection, level, group)),
-        structures=structures(selection),
-        limits=limits(pooled(layout, PoolModel(), selection.scale), level),
-        gain=gain_of(selection, found, sessions),
-        e_value=float(np.exp(min(scale.log_e_value, LARGEST))),
-        notes=tuple(notes(selection, effects)),
+        terms=tuple(learned_terms(answer, level)),
+        structures=tuple(structure for _, structure in structures(answer)),
+        limits=limits(model.pool, level),
+        gain=gain_of(answer, found, sessions),
+        e_value=float(np.exp(min(model.weighed().log_e_value, LARGEST))),
+        notes=tuple(notes(answer)),
     )
-
-
-def learned_terms(selection: GroupSelection, level: str, group: LackOfFitGroup) -> Iterator[EmpiricalTerm]:
-    """Empirical terms where the sessions share structure that no cause explains, place by place.
-
-    What has a name is left free in every session.
-    """
-    named = [(f.hypothesis.cause, f.hypothesis.sensor, f.hypothesis.shape) for f in selection.found]
-    whole_type = subject_of(selection.layout.parts[-1].statistics, TYPE)
-    places = dict.fromkeys(
-        (h.sensor, *((TYPE, whole_type) if level == TYPE and h.sensor else (h.level, h.subject)))
-        for h, _ in selection.structures
-    )
-    for sensor, term_level, subject in places if group.sessions else ():
-        fits = [fit for fit in group.fitted if Where(term_level, subject, sensor, "").concerns(fit.record)]
-        whole = [Library.of(fit.baseline, sensor, named) for fit in fits] if sensor != EVERY else []
-        terms = learn(sensor, whole)
-        if terms is not None:
-            yield replace(shown(subject, terms, whole), level=term_level)
 
 
 def subject_of(session: SessionStatistics, level: str) -> str:
@@ -136,34 +115,20 @@ def as_one(a: GroupFinding, b: GroupFinding) -> GroupFinding:
     )
 
 
-def notes(selection: GroupSelection, effects: Sequence[Estimated]) -> list[str]:
+def notes(answer: AnsweredGroup) -> list[str]:
     """Remarks for readers of the findings."""
     found: list[str] = []
-    for f, h in selection.misfits:
-        where = say(" on {sensor}", sensor=f.sensor) if f.sensor else ""
-        if h.shape is None:
-            found.append(
-                say(
-                    "{cause}{place} is close, but {combination} agrees better: it has no name",
-                    cause=f.cause,
-                    place=where,
-                    combination=joined(" + ", h.words),
-                )
-            )
-        else:
-            found.append(
-                say(
-                    "{cause}{place} is close, but leaves harmonic {shape} of β: it does not agree",
-                    cause=f.cause,
-                    place=where,
-                    shape=f"{h.shape:g}",
-                )
-            )
-    alone = [selection.layout.parts[k].statistics.started_at for k in sorted({k for k, _ in selection.of_one_session})]
+    for says in answer.courses.values():
+        words = joined(" + ", [word for h in says.course for word in h.words])
+        for h in says.withdrawn:
+            where = say(" on {sensor}", sensor=h.sensor) if h.sensor else ""
+            parts = {"cause": h.cause, "place": where, "combination": words}
+            found.append(say("{cause}{place} is close, but {combination} agrees better: it has no name", **parts))
+    alone = [answer.records[k].started_at for k in sorted({k for t in answer.model.own for k in t.sessions})]
     if alone:
         dates = dict.fromkeys(date or "one without a date" for date in alone)
         found.append(say("removed from single sessions that show it on their own: {dates}", dates=joined(", ", dates)))
-    larger = {p.statistics.unit: s for p, s in zip(selection.layout.parts, selection.scale, strict=True) if s > 1.5}
+    larger = {part.subjects[0]: part.scale for part in answer.model.pool.parts if part.scale > NOTED}
     found += [
         say("{unit}: the sessions scatter {ratio} times as much as stated", unit=u, ratio=f"{np.sqrt(s):.1f}")
         for u, s in larger.items()

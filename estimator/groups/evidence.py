@@ -16,32 +16,13 @@ By Ville's inequality the chance that the mean ever reaches 1/α without an effe
 
 import numpy as np
 
+from estimator.groups.priors import GROWTH, SPREADS, STRENGTHS
 from estimator.least_squares import scale_of
 from estimator.session import Array
-
-ALPHA = 0.01
-"""Chance that a group without an effect ever gets a name, for the whole of its life."""
-
-STRENGTHS = (0.5, 2.0, 8.0)
-"""κ: strengths of the effect in one session, standard errors, each with a third of the prior. From what only some
-hundred sessions show to what each shows by itself; in between the evidence is within a factor of two of the best."""
-
-SPREADS = (1.5, 3.0, 8.0)
-"""τ in the same unit: below 1.5 no single session adds to the evidence of a spread."""
-
-SAME, VARYING, SINCE = 0, 1, 2
-FORMS = (0.6, 0.2, 0.2)
-"""Prior share of an effect that is always the same, differs every time, began at some session: what lasts is what
-groups are pooled for."""
 
 FAINT = 0.03
 """Added to F₁ in units of its own diagonal, where there are several amplitudes: a combination of them that a session
 hardly sees is known to the steps of the kept correlations only, and would be evidence of rounding."""
-
-GROWTH = 1.25
-"""Ratio between sessions at which an effect is tried to begin, counted from the first: one that begins between two of
-them loses at most a fifth of its sessions to the later.
-"""
 
 
 def log_sum(values: Array) -> Array:

@@ -1,10 +1,6 @@
 """The benefit of a group's findings for sessions that took no part in their fit, and the parameters they move.
 
 The amplitudes are fixed on the first two thirds of the sessions and tried on those that came later.
-
-Naming may not predict worse: every name is tried on sessions that took no part in its amplitude. Of three parts of the
-sessions each is predicted from the other two, with the amplitude, its covariance and the spread between sessions that
-those have. A name whose sessions are likelier without it is none.
 """
 
 from collections.abc import Sequence
@@ -16,13 +12,10 @@ from estimator.calibration.calibrate import averaged
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.prediction import by_sensor
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.groups.evidence import VARYING
+from estimator.groups.course import AnsweredGroup
 from estimator.groups.fixed import added_by, fixed
-from estimator.groups.joint_fit import JointFit, predictive
-from estimator.groups.pool import PoolModel, pooled
-from estimator.groups.random_effects import mean_of
+from estimator.groups.joint_fit import JointFit
 from estimator.groups.results import GroupFinding, GroupGain, Moved
-from estimator.groups.selection import Found, GroupSelection
 from estimator.session import Array, CalibrationSession
 
 FIRST = 2 / 3
@@ -33,25 +26,21 @@ SHOWN = 5
 
 
 def gain_of(
-    selection: GroupSelection, findings: Sequence[GroupFinding], sessions: Sequence[CalibrationSession]
+    answer: AnsweredGroup, findings: Sequence[GroupFinding], sessions: Sequence[CalibrationSession]
 ) -> GroupGain | None:
     """The gain on later sessions; None without findings or without sessions to leave out."""
-    n = len(selection.layout.parts)
-    model, lasting = PoolModel(absorbed=selection.of_one_session), []
-    for f, finding in zip(selection.found, findings, strict=True):
-        if f.form != VARYING:
-            model = model.with_shared(f.place, f.since)
-            lasting.append(finding)
-    first = max(int(np.ceil(FIRST * n)), 1 + max((s.since for s in model.shared), default=0))
-    if not model.shared or first >= n:
+    model, n = answer.model, len(answer.records)
+    shared = [(t, finding) for t, finding in zip(model.named, findings, strict=True) if t.shared]
+    first = max(int(np.ceil(FIRST * n)), 1 + max((t.since for t, _ in shared), default=0))
+    if not shared or first >= n:
         return None
-    every = pooled(selection.layout, model, selection.scale).fit
+    every = model.pool.given([*model.own, *(t for t, _ in shared)]).fit
     fit, later = JointFit(every.U[:first], every.F[:first]), JointFit(every.U[first:], every.F[first:])
-    parts = [p.statistics for p in selection.layout.parts[first:]]
-    square = sum(float(p.whole.sum()) for p in parts)
-    freedom = sum(float(p.whole_freedom.sum()) for p in parts)
+    square = sum(float(s.whole.sum()) for s in answer.records[first:])
+    freedom = sum(float(s.whole_freedom.sum()) for s in answer.records[first:])
+    lasting = [finding for _, finding in shared]
     before, after = latest_errors(lasting, fit.amplitude, sessions[-1]) if sessions else (None, None)
-    removed = fit.reduces(later) * float(np.mean(selection.scale[first:]))
+    removed = fit.reduces(later) * float(np.mean([part.scale for part in model.pool.parts[first:]]))
     return GroupGain(
         fitted=first,
         held_out=n - first,
@@ -105,31 +94,3 @@ def moved(findings: Sequence[GroupFinding], session: CalibrationSession) -> tupl
         for j in order
         if change[j] != 0
     )
-
-
-PARTS = 3
-"""Parts of the sessions, every third one in each: all reach over the whole life of the group."""
-
-
-def names_that_predict(state: GroupSelection) -> GroupSelection:
-    """The findings by which sessions left out are likelier; the others are not tried again."""
-    worse = tuple(f for f in state.found if gained(state, f) <= 0)
-    found = tuple(f for f in state.found if f not in worse)
-    return replace(state, found=found, barred=state.barred | {f.hypothesis.group for f in worse})
-
-
-def gained(state: GroupSelection, name: Found) -> float:
-    """Log predictive density that a name gains, the other findings given."""
-    w, k = name.place
-    moments = state.weighed(without=name).pool.moments[w]
-    U, F = moments.U[name.since :, k], moments.F[name.since :, k]
-    seen = np.diagonal(F, axis1=1, axis2=2).sum(axis=1) > 0
-    U, F = U[seen], F[seen]
-    part = np.arange(len(U)) % PARTS
-    whole = 0.0
-    for p in range(PARTS) if len(U) > 1 else ():
-        fit = part != p
-        mean = mean_of(U[fit], F[fit])
-        spread = mean.covariance + mean.spread**2 * np.eye(w)
-        whole += sum(predictive(mean.value, spread, u, f) for u, f in zip(U[~fit], F[~fit], strict=True))
-    return whole if len(U) > 1 else np.inf

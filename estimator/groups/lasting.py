@@ -15,15 +15,14 @@ import numpy as np
 
 from estimator.causes.contract import Cause
 from estimator.diagnosis.results import Rival
+from estimator.groups.course import answered
 from estimator.groups.evidence import log_sum
-from estimator.groups.findings import Estimated, estimated, finding_of
-from estimator.groups.gain import names_that_predict
+from estimator.groups.findings import PooledEffect, effect_of, finding_of
 from estimator.groups.joint_fit import predictive
-from estimator.groups.lack_of_fit import LackOfFitGroup, names_that_fit
-from estimator.groups.layout import UNIT, GroupLayout
+from estimator.groups.layout import pool_of
+from estimator.groups.priors import UNIT
 from estimator.groups.random_effects import mean_of
 from estimator.groups.results import GroupFinding
-from estimator.groups.selection import select
 from estimator.groups.statistics import SessionStatistics
 from estimator.session import CalibrationSession
 
@@ -61,23 +60,22 @@ def lasting(
     ``sessions``: of the latest records, as many as are at hand. By them every name is held against what no catalogue
     has.
     """
-    layout = GroupLayout.of(records, UNIT)
+    pool = pool_of(records, UNIT)
     known = {cause.identifier for cause in catalogue}
-    tables = layout.hypotheses.values()
-    barred = frozenset(h.group for table in tables for h in table if not h.nameless and h.cause not in known)
-    selection = names_that_fit(LackOfFitGroup(names_that_predict(select(layout, barred)), tuple(sessions)))
+    barred = frozenset(h.group for h in pool.places if not h.nameless and h.cause not in known)
+    answer = answered(pool, records, sessions, barred)
     found = []
-    for f in selection.found:
-        effect = estimated(selection, f)
-        whole = finding_of(selection, effect, [("", None)] * len(effect.rivals))
+    for term in answer.model.named:
+        effect = effect_of(answer, term)
+        whole = finding_of(answer, effect, [("", None)] * len(effect.rivals))
         found += list(_in_latest(effect, whole))
     return found
 
 
-def _in_latest(effect: Estimated, whole: GroupFinding) -> Iterator[Lasting]:
+def _in_latest(effect: PooledEffect, whole: GroupFinding) -> Iterator[Lasting]:
     """The finding as the latest session may have it; nothing where that session cannot tell."""
     U, F, latest = effect.U, effect.F, len(effect.F) - 1
-    seen = (np.diagonal(F, axis1=1, axis2=2).sum(axis=1) > 0) & (np.arange(len(F)) >= effect.found.since)
+    seen = (np.diagonal(F, axis1=1, axis2=2).sum(axis=1) > 0) & (np.arange(len(F)) >= effect.term.since)
     others = seen & (np.arange(len(F)) < latest)
     if not seen[latest] or not others.any():
         return
@@ -93,20 +91,20 @@ def _in_latest(effect: Estimated, whole: GroupFinding) -> Iterator[Lasting]:
             spread=(mean.spread,),
         ),
         sessions=count + 1,
-        began=latest - effect.found.since,
+        began=latest - effect.term.since,
         probability=probability(predictive(mean.value, spread, U[latest], F[latest]), count),
         ranking=tuple(_ranking(effect)),
     )
 
 
-def _ranking(effect: Estimated) -> Iterator[Rival]:
+def _ranking(effect: PooledEffect) -> Iterator[Rival]:
     """Shares of all explanations, given that one of them acts."""
-    every = list(effect.scale.ranked())
+    every = effect.weighed.ranked()
     whole = float(log_sum(np.array([value for _, _, value in every])))
-    shown = {effect.found.hypothesis.group, *(n.hypothesis.group for n in effect.rivals)}
+    shown = {effect.hypothesis.group, *(n.hypothesis.group for n in effect.rivals)}
     for (w, k), h, value in every:
         if h.group in shown:
-            strength = float(np.sqrt(effect.scale.weighed[w].statistic[k]))
+            strength = float(np.sqrt(effect.weighed.widths[w].statistic[k]))
             yield Rival(h.cause, (h.sensor,) if h.sensor else (), float(np.exp(value - whole)), strength)
 
 

@@ -11,9 +11,10 @@ from estimator.causes.catalogue import cause
 from estimator.causes.contract import Signature
 from estimator.diagnosis.results import Limit
 from estimator.groups.candidates import lasting_causes
-from estimator.groups.evidence import ALPHA, FORMS, SAME, STRENGTHS, first_seen
-from estimator.groups.layout import EVERY, STAND, GroupHypothesis
-from estimator.groups.pool import Pool
+from estimator.groups.evidence import first_seen
+from estimator.groups.layout import EVERY
+from estimator.groups.pool import GroupHypothesis, Pool, PoolMoments
+from estimator.groups.priors import ENOUGH, FORMS, SAME, STAND, STRENGTHS
 from estimator.groups.results import PoolLimit
 from estimator.session import Array
 
@@ -23,23 +24,24 @@ POWER = 1.6449
 
 def limits(pool: Pool, level: str) -> tuple[PoolLimit, ...]:
     """One limit a lasting cause, at the place of the group where it is seen worst."""
-    return tuple(limit_of(pool, c, level) for c in lasting_causes())
+    moments = pool.given().moments
+    return tuple(limit_of(pool, moments, c, level) for c in lasting_causes())
 
 
-def limit_of(pool: Pool, known: Signature, level: str) -> PoolLimit:
+def limit_of(pool: Pool, moments: dict[int, PoolMoments], known: Signature, level: str) -> PoolLimit:
     """The limit of one cause."""
     worst: list[Array] = []
     latest: list[Array] = []
-    for w, table in pool.layout.hypotheses.items():
-        m = pool.moments[w]
-        first, (_, total) = first_seen(m.F), m.pooled
+    for w, table in pool.hypotheses.items():
+        m = moments[w]
+        first, total = first_seen(m.F), m.F.sum(axis=0)
         for k, h in enumerate(table):
             if h.cause != known.identifier or not _asked(h, level):
                 continue
             information = m.F[:, k]
             seen = np.flatnonzero(np.diagonal(information, axis1=1, axis2=2).sum(axis=1))
             if len(seen):
-                prior = float(pool.layout.log_prior[w][k])
+                prior = float(pool.log_prior[w][k])
                 worst.append(_smallest(total[k], first[k], prior))
                 latest.append(_smallest(information[seen[-1]], first[k], prior))
     return PoolLimit(**vars(_limit(known, worst)), one_session=_limit(known, latest).amplitude)
@@ -62,7 +64,7 @@ def _smallest(total: Array, first: Array, log_prior: float) -> Array:
 def _threshold(ratio: Array, kappa: float, log_prior: float) -> Array:
     """(w,) χ² at which one amplitude makes the group's e-value 1/α."""
     grown = np.maximum(kappa**2 * ratio, 1e-12)
-    enough = -np.log(ALPHA) - log_prior - np.log(FORMS[SAME]) + np.log(len(STRENGTHS))
+    enough = ENOUGH - log_prior - np.log(FORMS[SAME]) + np.log(len(STRENGTHS))
     return np.asarray(2 * (enough + 0.5 * np.log1p(grown)) * (1 + grown) / grown)
 
 

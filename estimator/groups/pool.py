@@ -1,48 +1,111 @@
-"""The sessions of a group added up: score and information of every hypothesis, given what was found before.
+"""The sessions of a group added up: score and information of every hypothesis, given the terms of a model.
 
-What is found enters in one of two ways. An amplitude that all sessions share is fitted jointly (`joint_fit`). One that
-differs from session to session is *absorbed* in each session by itself, as is what acts in one session only.
+A term enters in one of two ways. An amplitude that its sessions share is fitted jointly (`joint_fit`). One that differs
+from session to session is left free in each of them.
 """
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from estimator.groups.joint_fit import JointFit
-from estimator.groups.layout import GroupLayout, Part
+from estimator.groups.priors import SAME, SINCE, VARYING
 from estimator.groups.scores import LEFT
+from estimator.groups.statistics import HARMONIC
 from estimator.least_squares import given
 from estimator.session import Array
 
+LIBRARY = "terms"
+"""Takes the place of a cause: a term of the library."""
+
 Place = tuple[int, int]
-"""A hypothesis: its width and its number among those."""
+"""A hypothesis in a pool: its width and its number among those."""
 
 Among = Callable[[Array, Array], Array]
 """Information of a session, 1/SI², of ``rows`` and ``columns``, int, that broadcast: only what is asked is unpacked."""
 
 
 @dataclass(frozen=True)
-class SharedColumns:
-    """A hypothesis in the joint fit, with one amplitude from some session on."""
+class GroupHypothesis:
+    """A cause, or an unknown course, of a unit, a type or a stand, at a place, in a shape."""
 
-    place: Place
-    since: int = 0
+    level: str
+    subject: str
+    """Serial of the unit, name of the type or id of the stand."""
+    cause: str
+    sensor: str
+    """Empty for what acts on the applied vector, ``*`` for every sensor of the kind."""
+    kind: str
+    shape: float | None
+    width: int
+    words: tuple[str, ...] = ()
+    """Factors that the amplitudes of a term of the library multiply."""
+
+    @property
+    def nameless(self) -> bool:
+        return self.cause in (HARMONIC, LIBRARY)
+
+    @property
+    def group(self) -> tuple[str, ...]:
+        """The thing that is named: all its shapes are one."""
+        return self.level, self.subject, self.cause, self.sensor, self.kind, *self.words
 
 
 @dataclass(frozen=True, eq=False)
-class PoolModel:
-    """The model so far: what was found."""
+class Part:
+    """One session in a pool. E columns."""
 
-    shared: tuple[SharedColumns, ...] = ()
-    absorbed: tuple[tuple[int, Place], ...] = ()
-    """Number of the session and the hypothesis that is left free there."""
+    subjects: tuple[str, str, str]
+    """Its unit, the unit's type and the stand."""
+    scale: float
+    """Factor by which the variance exceeds the stated one; taken into account already."""
+    score: Array
+    """(E,) 1/SI."""
+    shrink: Array
+    """(E,) at most 1: factor with which a score enters the evidence."""
+    reach: Array
+    """(E,) largest change of a reading per unit amplitude, as a part of the applied vector."""
+    information: Among
+    numbers: dict[int, Array]
+    """Width → (k,) numbers of the hypotheses of that width that the session speaks of."""
+    columns: dict[int, Array]
+    """Width → (k, w) their columns here."""
 
-    def with_shared(self, place: Place, since: int = 0) -> "PoolModel":
-        return replace(self, shared=(*self.shared, SharedColumns(place, since)))
+    def columns_of(self, place: Place) -> Array | None:
+        """(w,) columns of a hypothesis; None where the session does not speak of it."""
+        width, number = place
+        matching = np.flatnonzero(self.numbers.get(width, np.zeros(0)) == number)
+        return self.columns[width][matching[0]] if len(matching) else None
 
-    def with_absorbed(self, sessions: Iterable[int], place: Place) -> "PoolModel":
-        return replace(self, absorbed=(*self.absorbed, *((k, place) for k in sessions)))
+    def without(self, columns: Iterable[Array]) -> tuple[Array, Among]:
+        """Its score and information given some columns left free."""
+        free = np.unique(np.concatenate([np.zeros(0, dtype=int), *columns]))
+        if not len(free):
+            return self.score, self.information
+        every = np.arange(len(self.score))
+        score, left = given(self.score, self.information(every[:, None], every), free.tolist(), LEFT)
+        return score, lambda rows, columns: np.asarray(left[rows, columns])
+
+
+@dataclass(frozen=True)
+class GroupTerm:
+    """One effect of a model of the group."""
+
+    place: Place
+    sessions: tuple[int, ...]
+    """The sessions that it acts in."""
+    shared: bool
+    """Whether they share one amplitude; else each has its own."""
+    since: int = 0
+    """The session that it began with."""
+
+    @property
+    def form(self) -> int:
+        if not self.shared:
+            return VARYING
+        return SINCE if self.since else SAME
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,115 +114,75 @@ class PoolMoments:
 
     U: Array
     """(n, H, w) scores, 1/SI, given the joint fit."""
-    evidence: Array
-    """(n, H, w) scores as they enter the evidence: those of estimated noise shrunk."""
     F: Array
     """(n, H, w, w) 1/SI²."""
     cross: Array
     """(n, H, w, a) 1/SI²: information shared with the joint fit."""
     lost: Array
     """(H, w, w) 1/SI²: information of the pool that the joint fit takes."""
+    shrink: Array
+    """(n, H, w) factors with which the scores enter the evidence."""
 
-    @property
-    def pooled(self) -> tuple[Array, Array]:
-        """(H, w) score and (H, w, w) information of the pool, given the joint fit."""
-        return self.U.sum(axis=0), self.F.sum(axis=0) - self.lost
+
+@dataclass(frozen=True, eq=False)
+class Given:
+    """A pool given the terms of a model."""
+
+    pool: "Pool"
+    terms: tuple[GroupTerm, ...]
+    moments: dict[int, PoolMoments]
+    fit: JointFit
+    """Fit of the amplitudes that sessions share, term after term."""
 
 
 @dataclass(frozen=True, eq=False)
 class Pool:
-    """A group's sessions added up under a model."""
+    """Hypotheses, by width, and the sessions that speak of them, oldest first."""
 
-    layout: GroupLayout
-    model: PoolModel
-    scale: Array
-    """(n,) factor by which the variance of each session exceeds the stated one."""
-    moments: dict[int, PoolMoments]
-    fit: JointFit
-    """Fit of the amplitudes that the model shares."""
+    hypotheses: dict[int, tuple[GroupHypothesis, ...]]
+    log_prior: dict[int, Array]
+    """Width → (H,) ln of the prior share."""
+    parts: tuple[Part, ...]
 
+    def __getitem__(self, place: Place) -> GroupHypothesis:
+        return self.hypotheses[place[0]][place[1]]
 
-def extended(part: Part, scale: float) -> tuple[Array, Array, Among]:
-    """(E,) U, (E,) U as it enters the evidence, and F, in 1/SI, of a session with its sums over sensors."""
-    s = part.statistics
-    U = s.score * s.size / scale
-    shrink = np.repeat(s.shrink, [b.width for b in s.blocks])
-    if not part.sums:
-        return U, U * shrink, lambda rows, columns: s.among(rows, columns) * s.size[rows] * s.size[columns] / scale
-    F = s.information * s.size[:, None] * s.size / scale
-    add = np.zeros((len(part.sums), len(U)))
-    for row, members in zip(add, part.sums, strict=True):
-        row[list(members)] = 1.0
-    mean = np.concatenate([shrink, [float(shrink[list(m)].mean()) for m in part.sums]])
-    across = add @ F
-    U, F = np.concatenate([U, add @ U]), np.block([[F, across.T], [across, across @ add.T]])
-    return U, U * mean, among(F)
+    @cached_property
+    def places(self) -> dict[GroupHypothesis, Place]:
+        """Every hypothesis with its place."""
+        return {h: (w, k) for w, table in self.hypotheses.items() for k, h in enumerate(table)}
 
+    def acting(self, place: Place, since: int = 0) -> tuple[int, ...]:
+        """The sessions, from one on, that speak of a hypothesis."""
+        rest = range(since, len(self.parts))
+        return tuple(k for k in rest if self.parts[k].columns_of(place) is not None)
 
-def among(F: Array) -> Among:
-    """An information (E, E), 1/SI², that is known as a whole."""
-    return lambda rows, columns: np.asarray(F[rows, columns])
-
-
-def columns_in(part: Part, place: Place) -> Array | None:
-    """(w,) columns of a hypothesis in a session; None where the session does not speak of it."""
-    width, number = place
-    matching = np.flatnonzero(part.hypotheses.get(width, np.zeros(0)) == number)
-    return part.columns[width][matching[0]] if len(matching) else None
-
-
-def without(U: Array, E: Array, information: Among, columns: Sequence[int]) -> tuple[Array, Array, Array]:
-    """U (E,), evidence (E,) and F (E, E) given some columns left free."""
-    every = range(len(U))
-    F = information(*np.ix_(every, every))
-    scores, left = given(np.stack([U, E], axis=1), F, columns, LEFT)
-    return scores[:, 0], scores[:, 1], left
-
-
-def pooled(layout: GroupLayout, model: PoolModel = PoolModel(), scale: Array | None = None) -> Pool:
-    """All sessions of a layout added up under a model; ``scale`` (n,) of their variances, by default 1."""
-    n = len(layout.parts)
-    scale = np.ones(n) if scale is None else scale
-    a = sum(s.place[0] for s in model.shared)
-    empty = {
-        w: (np.zeros((n, H, w)), np.zeros((n, H, w)), np.zeros((n, H, w, w)), np.zeros((n, H, w, a)))
-        for w, H in ((w, len(table)) for w, table in layout.hypotheses.items())
-    }
-    fit = JointFit(np.zeros((n, a)), np.zeros((n, a, a)))
-    for k, part in enumerate(layout.parts):
-        U, E, F = extended(part, float(scale[k]))
-        free = [c for j, place in model.absorbed if j == k and (c := columns_in(part, place)) is not None]
-        if free:
-            U, E, left = without(U, E, F, np.unique(np.concatenate(free)).tolist())
-            F = among(left)
-        where, joint = joint_columns(part, model, k)
-        fit.U[k, where], fit.F[k][np.ix_(where, where)] = U[joint], F(*np.ix_(joint, joint))
-        for w, numbers in part.hypotheses.items():
-            c = part.columns[w]
-            all_U, all_E, all_F, cross = empty[w]
-            all_U[k, numbers], all_E[k, numbers] = U[c], E[c]
-            all_F[k, numbers] = F(c[:, :, None], c[:, None, :])
-            if joint:
-                cross[k][numbers[:, None, None], np.arange(w)[None, :, None], np.array(where)[None, None, :]] = F(
-                    c[:, :, None], np.array(joint)[None, None, :]
-                )
-    moments = {}
-    for w, (all_U, all_E, all_F, cross) in empty.items():
-        explained = fit.explains(cross)
-        moments[w] = PoolMoments(all_U - explained, all_E - explained, all_F, cross, fit.absorbs(cross))
-    return Pool(layout, model, scale, moments, fit)
-
-
-def joint_columns(part: Part, model: PoolModel, session: int) -> tuple[list[int], list[int]]:
-    """Numbers of the joint fit's amplitudes that act in a session, and their columns there."""
-    where: list[int] = []
-    joint: list[int] = []
-    start = 0
-    for s in model.shared:
-        width = s.place[0]
-        columns = columns_in(part, s.place) if session >= s.since else None
-        if columns is not None:
-            where += range(start, start + width)
-            joint += columns.tolist()
-        start += width
-    return where, joint
+    def given(self, terms: Sequence[GroupTerm] = ()) -> Given:
+        """All sessions added up, given terms."""
+        shared = [t for t in terms if t.shared]
+        ends = np.cumsum([0, *(t.place[0] for t in shared)])
+        n, a = len(self.parts), int(ends[-1])
+        fit = JointFit(np.zeros((n, a)), np.zeros((n, a, a)))
+        arrays = {
+            w: (np.zeros((n, H, w)), np.zeros((n, H, w, w)), np.zeros((n, H, w, a)), np.ones((n, H, w)))
+            for w, H in ((w, len(table)) for w, table in self.hypotheses.items())
+        }
+        for k, part in enumerate(self.parts):
+            acting = [(j, t, c) for j, t in enumerate(terms) if k in t.sessions for c in [part.columns_of(t.place)]]
+            score, information = part.without(c for _, t, c in acting if not t.shared and c is not None)
+            joint = [(shared.index(t), c) for _, t, c in acting if t.shared and c is not None]
+            slots = np.concatenate([np.zeros(0, dtype=int), *(np.arange(ends[j], ends[j + 1]) for j, _ in joint)])
+            at = np.concatenate([np.zeros(0, dtype=int), *(c for _, c in joint)])
+            fit.U[k, slots], fit.F[k][np.ix_(slots, slots)] = score[at], information(at[:, None], at)
+            for w, numbers in part.numbers.items():
+                U, F, cross, shrink = arrays[w]
+                c = part.columns[w]
+                U[k, numbers], F[k, numbers] = score[c], information(c[:, :, None], c[:, None, :])
+                shrink[k, numbers] = part.shrink[c]
+                if len(at):
+                    cross[k][numbers[:, None, None], np.arange(w)[:, None], slots] = information(c[:, :, None], at)
+        moments = {
+            w: PoolMoments(U - fit.explains(cross), F, cross, fit.absorbs(cross), shrink)
+            for w, (U, F, cross, shrink) in arrays.items()
+        }
+        return Given(self, tuple(terms), moments, fit)

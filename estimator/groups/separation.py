@@ -11,9 +11,9 @@ from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.groups.candidates import columns_of
-from estimator.groups.findings import Estimated
-from estimator.groups.layout import EVERY, GroupHypothesis
-from estimator.groups.selection import GroupSelection
+from estimator.groups.findings import PooledEffect
+from estimator.groups.layout import EVERY
+from estimator.groups.pool import GroupHypothesis
 from estimator.groups.statistics import Block
 from estimator.least_squares import least_squares
 from estimator.session import Array, CalibrationSession
@@ -32,11 +32,11 @@ class Separator:
 
     sessions: tuple[CalibrationSession, ...]
 
-    def measurements(self, selection: GroupSelection, effect: Estimated) -> list[tuple[str, int | None]]:
+    def measurements(self, effect: PooledEffect) -> list[tuple[str, int | None]]:
         """The measurement that would separate each rival of a finding, in words, and the number of such sessions."""
         if not effect.rivals or not self.sessions:
             return [("", None)] * len(effect.rivals)
-        h, amplitude = effect.found.hypothesis, effect.mean.value
+        h, amplitude = effect.hypothesis, effect.mean.value
         plans = planned(self.session_of(h))
         answers: list[tuple[str, int | None]] = []
         for rival in effect.rivals:

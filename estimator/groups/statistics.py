@@ -115,6 +115,11 @@ class SessionStatistics(
     put_right: tuple[str, ...] = ()
     """Corrections of the record, made first, in words."""
 
+    @property
+    def subjects(self) -> tuple[str, str, str]:
+        """The unit, its type and the stand."""
+        return self.unit, self.unit_type, self.stand
+
     @cached_property
     def starts(self) -> Array:
         """(B + 1,) int, dimensionless: first column of every block, and D."""

@@ -8,10 +8,9 @@ import pytest
 
 from benchmarks.study.looks import e_process
 from estimator import CalibrationSession, diagnose_group, diagnose_statistics, statistics_of
-from estimator.groups.evidence import SAME
-from estimator.groups.layout import GroupLayout
-from estimator.groups.pool import pooled
-from estimator.groups.selection import shown_by_one
+from estimator.groups.layout import pool_of
+from estimator.groups.pool import GroupTerm
+from estimator.groups.search import shown_by_one
 from tests.blind.world import Effect
 from tests.estimator.groups.cases import measured, worlds
 
@@ -105,15 +104,12 @@ def of_type(affected: set[str]) -> list[CalibrationSession]:
 
 
 def test_a_type_is_accused_by_no_single_unit_however_often_it_was_measured() -> None:
-    layout = GroupLayout.of([statistics_of(session) for session in of_type({"U1"})], "type")
+    pool = pool_of([statistics_of(session) for session in of_type({"U1"})], "type")
     [place] = [
-        (w, k)
-        for w, table in layout.hypotheses.items()
-        for k, h in enumerate(table)
-        if (h.level, h.cause, h.sensor) == ("type", "cubic-nonlinearity", "A2")
+        p for h, p in pool.places.items() if (h.level, h.cause, h.sensor) == ("type", "cubic-nonlinearity", "A2")
     ]
-    pool = pooled(layout)
-    assert shown_by_one(pool, place, SAME, 0) == tuple(k for k, unit in enumerate(SERIALS) if unit == "U1")
+    of_one = tuple(k for k, unit in enumerate(SERIALS) if unit == "U1")
+    assert shown_by_one(pool.given(), GroupTerm(place, tuple(range(12)), True)) == of_one
 
 
 @pytest.mark.parametrize(("affected", "accused"), [({"U1"}, False), ({"U0", "U1", "U2", "U3"}, True)])

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from estimator.groups.evidence import ALPHA, log_bayes, log_since, log_varying
+from estimator.groups.evidence import log_bayes, log_since, log_varying
+from estimator.groups.priors import ALPHA, SPREADS, STRENGTHS
 from estimator.groups.random_effects import mean_of
 
 LIVES, LOOKS = 4000, 60
@@ -44,6 +45,23 @@ def test_evidence_is_soon_there_where_the_effect_is() -> None:
     """Strength 3 in each of five sessions, 6.7 together."""
     F = np.ones((1, 1, 1))
     assert log_bayes(np.array([[15.0]]), 5 * F, F)[0] > -np.log(ALPHA) + 10
+
+
+def test_the_evidence_is_the_integral_over_the_amplitude() -> None:
+    """By the trapezium rule: one amplitude in all sessions, and one in each."""
+    F, U = np.array([0.8, 2.0, 1.1]), np.array([1.9, 3.1, -0.4])
+    a = np.linspace(-60, 60, 240_001)
+    likelihood = np.exp(a[:, None] * U - 0.5 * a[:, None] ** 2 * F)
+
+    def normal(variance: float) -> np.ndarray:
+        return np.exp(-0.5 * a**2 / variance) / np.sqrt(2 * np.pi * variance)
+
+    same = np.mean([np.trapezoid(likelihood.prod(axis=1) * normal(k**2 / F[0]), a) for k in STRENGTHS])
+    found = log_bayes(U.sum()[None, None], F.sum()[None, None, None], F[:1, None, None])[0]
+    assert found == pytest.approx(np.log(same), rel=1e-4)
+    each = [[np.trapezoid(likelihood[:, s] * normal(t**2 / F[s]), a) for s in range(3)] for t in SPREADS]
+    varying = log_varying(np.array([(U**2 / F).sum()]), np.array([3]))[0]
+    assert varying == pytest.approx(np.log(np.mean(np.prod(each, axis=1))), rel=1e-4)
 
 
 @pytest.mark.slow

@@ -1,4 +1,4 @@
-"""Names are held against the library of terms, and against sessions that took no part in them."""
+"""Names of a group are held against courses that no cause describes."""
 
 from dataclasses import replace
 from functools import cache
@@ -8,13 +8,12 @@ import pytest
 
 from estimator import CalibrationSession, diagnose, diagnose_group, diagnose_statistics, statistics_of
 from estimator.causes.catalogue import UNEXPLAINED
-from estimator.groups.evidence import SAME
-from estimator.groups.gain import gained, names_that_predict
-from estimator.groups.lack_of_fit import LackOfFitGroup, names_that_fit
-from estimator.groups.layout import TERMS, UNIT, GroupLayout
-from estimator.groups.selection import Found, GroupSelection, select
+from estimator.groups.course import AnsweredGroup, Where, answered, judged
+from estimator.groups.layout import pool_of
+from estimator.groups.pool import LIBRARY
+from estimator.groups.priors import DOUBT, UNIT
+from estimator.groups.search import GroupModel, search, weigh
 from estimator.groups.session_statistics import as_kept
-from estimator.groups.terms import Library, confirmed
 from tests.blind.world import Effect
 from tests.estimator.groups.cases import measured, worlds
 
@@ -30,28 +29,44 @@ def sessions(effect: Effect | None, count: int = 8) -> tuple[CalibrationSession,
 
 
 @cache
-def selected(effect: Effect | None) -> GroupSelection:
-    """Selection from the catalogue alone."""
-    return select(GroupLayout.of([statistics_of(s) for s in sessions(effect)], UNIT))
+def answer(effect: Effect) -> AnsweredGroup:
+    """The model of the sessions of an effect, held against unknown courses."""
+    records = [statistics_of(s) for s in sessions(effect)]
+    return answered(pool_of(records, UNIT), records, sessions(effect))
 
 
-def test_the_catalogue_alone_names_what_it_does_not_have_and_the_library_takes_it_back() -> None:
-    state = selected(WARM)
-    assert state.found
-    left = names_that_fit(LackOfFitGroup(state, sessions(WARM)))
-    assert left.found == ()
-    ((structure, statistic),) = left.structures
-    assert (structure.cause, structure.sensor, structure.words) == (TERMS, "A2", ("|a|·(T − T̄)",))
-    assert statistic > 50
+def test_the_catalogue_alone_names_what_it_does_not_have_and_a_course_takes_its_place() -> None:
+    records = [statistics_of(s) for s in sessions(WARM)]
+    assert search(GroupModel(pool_of(records, UNIT))).named
+    left = answer(WARM)
+    assert left.model.named == []
+    ((where, says),) = left.courses.items()
+    (course,) = says.course
+    assert (where.sensor, course.cause, course.words) == ("A2", LIBRARY, ("|a|·(T − T̄)",))
+    assert says.statistic > 50
+    assert says.probability > 0.5
 
 
 def test_a_cause_of_the_catalogue_stays_without_a_doubt() -> None:
-    left = names_that_fit(LackOfFitGroup(selected(CUBIC), sessions(CUBIC)))
-    assert {f.hypothesis.sensor for f in left.found} == {"A2"}
-    assert (left.structures, left.doubted) == ((), frozenset())
+    left = answer(CUBIC)
+    assert {left.model.pool[t.place].sensor for t in left.model.named} == {"A2"}
+    assert (left.courses, left.doubted) == ({}, frozenset())
 
 
-def test_what_is_taken_back_is_told_with_the_terms_that_fit_better() -> None:
+def test_the_probability_of_a_course_is_that_of_all_sets_with_one() -> None:
+    """One name against each course in its place, by the evidence of single hypotheses."""
+    left = answer(CUBIC)
+    where = Where(UNIT, sessions(CUBIC)[0].unit, "A2", "accelerometer")
+    pool = left.pool(where)
+    (name,) = [h for h in pool.places if h.cause == CUBIC.cause]
+    weighed = weigh(pool.given())
+    names = np.logaddexp.reduce([v for _, _, v in weighed.ranked()])
+    courses = np.logaddexp.reduce([v for _, _, v in weighed.ranked(nameless=True)])
+    instead = 1 / (1 + np.exp(names - courses))
+    assert instead <= judged(pool, [name]).probability + 1e-9 < instead + DOUBT
+
+
+def test_a_withdrawn_name_is_reported_with_the_terms_that_fit_better() -> None:
     found = diagnose_group(sessions(WARM))
     assert (found.findings, found.unexplained) == ((), True)
     assert "|a|·(T − T̄) agrees better: it has no name" in " ".join(found.notes)
@@ -94,18 +109,6 @@ def test_the_history_of_a_diagnosis_is_held_against_the_library(at_hand: int) ->
         assert not any(UNEXPLAINED in f.alternatives for f in found.findings)
 
 
-def test_a_name_by_which_other_sessions_are_less_likely_is_none() -> None:
-    state = selected(CUBIC)
-    (name,) = state.found
-    assert gained(state, name) > 10
-    w, table = 1, state.layout.hypotheses[1]
-    other = next(k for k, h in enumerate(table) if (h.cause, h.sensor) == ("cubic-nonlinearity", "A5"))
-    false = Found((w, other), table[other], SAME, 0, 0.0)
-    assert gained(replace(state, found=(name, false)), false) < 3
-    noise = replace(state, found=tuple(Found((w, k), h, SAME, 0, 0.0) for k, h in enumerate(table) if h.sensor == "A5"))
-    assert len(names_that_predict(noise).found) < len(noise.found)
-
-
 def test_a_session_is_fitted_as_its_record_took_it() -> None:
     (session, *_) = sessions(None)
     readings = session.readings.copy()
@@ -119,14 +122,11 @@ def test_a_session_is_fitted_as_its_record_took_it() -> None:
     )
 
 
-@pytest.mark.parametrize("extra", [("a before",), ("run",)])
-def test_no_term_is_confirmed_that_the_sessions_left_out_lose_by(extra: tuple[str, ...]) -> None:
-    """The held-out sessions have the opposite effect, so that whatever was learned is a loss."""
-
-    def whole(sign: float, count: int) -> list[Library]:
-        effect = replace(WARM, amplitude=(sign * WARM.k,))
-        return [Library.of(as_kept(s, statistics_of(s)), "A2", []) for s in sessions(effect, count)]
-
-    fit, held = whole(1.0, 4), whole(-1.0, 4)
-    assert confirmed("A2", fit, held, (("|a|·(T − T̄)",), extra)) in ((), (extra,))
-    assert confirmed("A2", fit, fit, (("|a|·(T − T̄)",),)) == (("|a|·(T − T̄)",),)
+def test_a_name_that_no_session_at_hand_can_show_is_in_doubt() -> None:
+    """Warm-up of nine tenths of the sessions; the only one at hand has no clock."""
+    effect = Effect("bias-temperature", (3e-5,), (1,))
+    whole = [measured(w, [effect], 500 + k) for k, w in enumerate(worlds(8))]
+    kept = [statistics_of(s) for s in whole]
+    blind = replace(whole[-1], temperature=None)
+    found = diagnose_statistics([*kept[:-1], statistics_of(blind)], sessions=[blind])
+    assert [(f.cause, UNEXPLAINED in f.alternatives) for f in found.findings] == [("bias-temperature", True)]

@@ -5,7 +5,6 @@ import pytest
 
 from estimator import diagnose_group
 from estimator.groups.joint_fit import predictive
-from estimator.groups.terms import learn, libraries
 from tests.blind.world import Effect
 from tests.estimator.groups.cases import measured, worlds
 
@@ -21,28 +20,24 @@ def sessions():
     return [measured(w, third_harmonic(2e-4), 40 + k) for k, w in enumerate(worlds(9))]
 
 
-def test_a_wave_is_learned_with_its_amplitudes(sessions) -> None:
-    learned = learn("A2", libraries(sessions, "A2"))
-    assert learned is not None
-    assert learned.keys == (("sin 3β", "cos 3β"),)
-    off = (learned.value - 2e-4 * np.array([np.cos(0.5), np.sin(0.5)])) / np.sqrt(np.diagonal(learned.covariance))
-    assert np.abs(off).max() < 3.5
-
-
 def test_the_group_is_unexplained_and_shows_the_term(sessions) -> None:
     found = diagnose_group(sessions)
     assert found.unexplained
     assert found.findings == ()
     (term,) = found.terms
+    assert term.words == ("sin 3β", "cos 3β")
+    off = (np.array(term.amplitude) - 2e-4 * np.array([np.cos(0.5), np.sin(0.5)])) / term.sigma
+    assert np.abs(off).max() < 3.5
     assert "sin 3β" in term.equation
     assert term.gain > 0
     before, after = (np.abs(side) for side in (term.picture.before, term.picture.after))
     assert after.mean() < before.mean()
 
 
-def test_nothing_is_learned_where_there_is_nothing() -> None:
-    quiet = [measured(w, [], 60 + k) for k, w in enumerate(worlds(6))]
-    assert learn("A2", libraries(quiet, "A2")) is None
+def test_nothing_is_learned_that_the_sessions_left_out_lose_by() -> None:
+    """In every third session, which take no part in the fit, the wave is reversed."""
+    whole = [measured(w, third_harmonic(2e-4 * (-1) ** (k % 3 == 2)), 40 + k) for k, w in enumerate(worlds(9))]
+    assert diagnose_group(whole).terms == ()
 
 
 def test_the_predictive_gain_is_the_ratio_of_two_normal_densities() -> None:
